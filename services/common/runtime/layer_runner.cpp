@@ -417,7 +417,7 @@ Status LayerRunner::let_time_pass() {
     if (woken && asleep_.contains(asset_id)) woken = recall(asset_id);
     return woken ? at_rest(asset_id) : nullptr;
   };
-  if (options_.local_inputs) options_.local_inputs->look(woken_at_rest);
+  if (options_.local_inputs) options_.local_inputs->look(woken_at_rest, at_rest);
   if (!woken) return woken;
   const auto now = steady_clock::now();
   if (now - started_ < options_.settling || (full_since_ && now - *full_since_ < options_.longest_wait)) return {};

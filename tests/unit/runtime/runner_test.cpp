@@ -490,7 +490,7 @@ TEST(Identity, OfAMessageThatGivesNoneIsThatOfBeforeHeadersSaidHowClocksAreKept)
 class FakeLocalInputs final : public LocalInputs {
  public:
   explicit FakeLocalInputs(std::vector<RawSamples> blocks) : blocks_(blocks.begin(), blocks.end()) {}
-  void look(const LayerAtRest&) override { ++looks; }
+  void look(const LayerAtRest&, const LayerAtRest&) override { ++looks; }
   bool has_some() override { return !blocks_.empty(); }
   std::vector<Message> take() override {
     std::vector<Message> piece = {blocks_.front()};
@@ -522,7 +522,7 @@ TEST_F(RunnerTest, TakesLocalInputsOnceAndLooksForThemEverySecond) {
 /// Says that there is something, from a thread of its own, after a while.
 class LateLocalInputs final : public LocalInputs {
  public:
-  void look(const LayerAtRest&) override {}
+  void look(const LayerAtRest&, const LayerAtRest&) override {}
   void on_some(std::function<void()> call) override { call_ = std::move(call); }
   bool has_some() override { return has_some_; }
   std::vector<Message> take() override {

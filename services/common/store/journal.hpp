@@ -46,7 +46,8 @@ struct SetAside {
   std::string reason;
 };
 
-enum class InputState { open, consumed, set_aside, awaiting };  // awaiting: kept until a second person confirms it
+/// awaiting: an act that is kept until a second person confirms it; ahead: until what it means is known.
+enum class InputState { open, consumed, set_aside, awaiting, ahead };
 
 /// What a committed batch is safe from at once. A power cut takes back the last batches that are safe from kills alone,
 /// always the newest first, until they are on the disk (Journal::to_disk).
@@ -185,7 +186,11 @@ class Journal {
   };
   /// What waits for a second person, in the order of receipt.
   [[nodiscard]] Result<std::vector<Awaiting>> awaiting();
-  /// Ends the wait of one of them: open or consumed.
+  /// Of each asset with acts that are ahead, their number.
+  [[nodiscard]] Result<std::map<std::string, std::size_t>> acts_ahead();
+  /// Ids of those of one asset, in the order of receipt.
+  [[nodiscard]] Result<std::vector<std::string>> acts_ahead(const std::string& asset_id);
+  /// Ends the wait of an act that is awaiting or ahead: open or consumed.
   [[nodiscard]] Status end_awaiting(const std::string& message_id, InputState state);
 
   // The quarantine. It is written between begin and commit; askers write to it from other processes (quarantine_desk.hpp).

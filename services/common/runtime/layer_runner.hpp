@@ -245,6 +245,7 @@ class LayerRunner {
   [[nodiscard]] Status look_at_own_acts();
   /// Where the journal is new and others' records are not, what people said to this service is lost: an alarm.
   [[nodiscard]] Status compare_acts();
+  [[nodiscard]] bool all_heard() const;
   [[nodiscard]] Status record(const OperatorAct& act);
   /// What a layer does not act upon.
   [[nodiscard]] Status tell(const Refusal& refused);

@@ -21,8 +21,6 @@ constexpr std::size_t kMostAhead = 1000;
 constexpr std::size_t kHashLength = 64;
 /// Of a second: who invents records invents many.
 constexpr std::size_t kMostNewAnchors = 16;
-/// After so long whoever runs was heard: what others record from then on is not older than the own journal.
-constexpr std::chrono::minutes kAllHeard{1};
 
 std::string who_said(const Message& message) {
   const auto act = act_of(message, {}, {});
@@ -268,14 +266,21 @@ Status LayerRunner::look_at_own_acts() {
   return {};
 }
 
+/// What others record from then on is not older than the own journal. A service that is down may have an older record.
+bool LayerRunner::all_heard() const {
+  const auto& services = options_.strangers.services;
+  return !services.empty() && std::ranges::all_of(services, [this](const std::string& service) {
+    return service == kind_->name() || first_heard_.contains(service);
+  });
+}
+
 /// The neighbours' messages make the conclusions again. Acts were told once, by people who are gone: a retracted test
 /// would count again in this service alone, and nobody would know.
 Status LayerRunner::compare_acts() {
   if (!is_new_) return {};
   const bool takes_acts = std::ranges::find(kind_->inputs(), Topic::maintenance_event) != kind_->inputs().end();
   const bool is_lost = (takes_acts && !has_older_acts_.empty()) || !has_read_more_.empty();
-  const bool all_heard = !first_heard_.empty() && std::chrono::steady_clock::now() - started_ > kAllHeard;
-  if (!is_lost && !all_heard) return {};
+  if (!is_lost && !all_heard()) return {};
   is_new_ = false;
   const std::string& other = has_read_more_.empty() ? has_older_acts_ : has_read_more_;
   const SetAside lost = reads_samples() ? samples_lost(kind_->name(), other, clock_.now())

@@ -392,6 +392,19 @@ TEST_F(LostJournal, IsAnAlarmWhereOthersHaveARecordOfActsUntilSomebodySaysThemAg
   EXPECT_THAT(alarms(), IsEmpty());
 }
 
+/// For a minute only the neighbour without a record ran: who has one was started again later.
+TEST_F(LostJournal, IsNoticedWheneverTheOneWithARecordIsHeard) {
+  RunnerOptions options = fast_options();
+  options.strangers.services = {"data_manipulation", "state_detection", "advisory_generation"};
+  const auto process = start(options);
+  ServiceStatus without = with_acts(0);
+  without.service = "data_manipulation";
+  without.writer_id = "data_manipulation-1";
+  hear(*process, without);
+  hear(*process, with_acts(1));
+  EXPECT_THAT(alarms(), ElementsAre(HasSubstr("state_detection has a record")));
+}
+
 TEST_F(LostJournal, ANewOneWhoseNeighboursAreNewTooIsNone) {
   auto process = start();
   hear(*process, with_acts(0));

@@ -37,7 +37,7 @@ void ReplayLog::take(const Message& message) {
   if (!options_.page.empty()) histories_[asset_of(message)].take(message);
   if (const auto* life = std::get_if<RemainingLife>(&message); life != nullptr && !life->header.pst_id.empty()) {
     const auto latest = latest_known_.find(life->asset_id);
-    taken_in_[life->header.pst_id] =
+    taken_in_[{life->asset_id, life->header.pst_id}] =
         life->header.event_time_known && latest != latest_known_.end() && life->header.event_time_ns < latest->second;
   }
   if (const auto* advisory = std::get_if<Advisory>(&message)) show_advisory(*advisory, message);
@@ -49,8 +49,8 @@ std::string ReplayLog::without_advice() const {
     return "these tests were known already (same recording_id and content), nothing new was advised";
   std::size_t silent = 0;
   std::size_t earlier = 0;
-  for (const auto& [pst_id, later_known] : taken_in_) {
-    if (concluded_.contains(pst_id)) continue;
+  for (const auto& [test, later_known] : taken_in_) {
+    if (concluded_.contains(test)) continue;
     ++silent;
     if (later_known) ++earlier;
   }
@@ -63,7 +63,7 @@ std::string ReplayLog::without_advice() const {
 }
 
 void ReplayLog::show_advisory(const Advisory& advisory, const Message& message) {
-  if (!advisory.header.pst_id.empty()) concluded_.insert(advisory.header.pst_id);
+  if (!advisory.header.pst_id.empty()) concluded_.insert({advisory.asset_id, advisory.header.pst_id});
   // A test that changes nothing repeats the advisory: shown once, unless its state changes.
   const std::string now = advisory.advisory_id + std::string(name_of(advisory.state));
   std::string& before = last_advisory_[advisory.asset_id];

@@ -7,6 +7,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "sealwatch/core/result.hpp"
 #include "sealwatch/message/topics.hpp"
@@ -47,8 +48,9 @@ class ReplayLog {
   ReplayOptions options_;
   Progress progress_;
   bool any_refused_ = false;
-  std::set<std::string> concluded_;       ///< PST ids that reached the last layer
-  std::map<std::string, bool> taken_in_;  ///< by PST id: tests judged in this replay; whether a later one was known
+  using Test = std::pair<std::string, std::string>;   // asset and PST id
+  std::set<Test> concluded_;                          ///< those that reached the last layer
+  std::map<Test, bool> taken_in_;                     ///< those judged in this replay: whether a later one was known
   std::map<std::string, std::int64_t> latest_known_;  ///< by asset: event time of the last test or replacement before
   std::map<std::string, std::string> last_advisory_;  ///< advisory id and state shown last, by asset
   std::map<std::string, AssetView> assets_;

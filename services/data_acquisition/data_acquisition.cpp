@@ -85,6 +85,14 @@ bool DataAcquisition::is_closed(const RawSamples& first_block) const {
   return finished_.contains(make_pst_id(first_block));
 }
 
+std::vector<SampleBlock> DataAcquisition::closing_blocks(const std::string& source_id,
+                                                         const std::string& reason) const {
+  std::vector<SampleBlock> blocks;
+  for (const auto& [identity, running] : running_)
+    if (running.source_id == source_id) blocks.push_back(running.test.closing_block(reason));
+  return blocks;
+}
+
 OpenTest DataAcquisition::open(const std::string& asset_id) const {
   for (const AssetConfig& asset : assets_) {
     if (asset.asset_id != asset_id) continue;

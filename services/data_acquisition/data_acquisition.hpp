@@ -37,6 +37,8 @@ class DataAcquisition final : public Layer {
   [[nodiscard]] Conclusion tick(UtcTime now) override;
   /// Whether the test that begins with this block is closed.
   [[nodiscard]] bool is_closed(const RawSamples& first_block) const;
+  /// Of each open test of this source, the block that would close it.
+  [[nodiscard]] std::vector<SampleBlock> closing_blocks(const std::string& source_id, const std::string& reason) const;
 
  private:
   struct Running {

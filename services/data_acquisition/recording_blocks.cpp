@@ -59,4 +59,20 @@ std::vector<RawSamples> blocks_of(const Recording& recording, std::size_t sample
   return blocks;
 }
 
+RawSamples end_of(const SampleBlock& closing) {
+  RawSamples raw;
+  raw.asset_id = closing.asset_id;
+  raw.header.message_id = "raw_samples/" + closing.asset_id + "/" + closing.header.pst_id + "/no-more";
+  raw.header.producer = raw.source_id = closing.source_id;
+  raw.recording_id = closing.recording_id;
+  raw.test_kind = closing.test_kind;
+  raw.block_number = closing.block_number;
+  raw.boundary = BlockBoundary::end;
+  raw.aborted = closing.aborted;
+  raw.abort_reason = closing.abort_reason;
+  raw.start_time_known = raw.header.event_time_known = closing.header.event_time_known;
+  raw.start_time_ns = raw.header.event_time_ns = closing.header.event_time_ns;
+  return raw;
+}
+
 }  // namespace sealwatch

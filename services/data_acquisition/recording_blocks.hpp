@@ -21,4 +21,7 @@ inline constexpr std::size_t kSamplesPerBlock = 200;               // a second a
                                                 std::size_t samples_per_block = kSamplesPerBlock,
                                                 const std::string& source_id = "replay", bool replay = true);
 
+/// What ends a test of which no more comes, as its sender would say it.
+[[nodiscard]] RawSamples end_of(const SampleBlock& closing);
+
 }  // namespace sealwatch

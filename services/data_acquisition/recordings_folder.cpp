@@ -59,6 +59,10 @@ std::optional<std::vector<RawSamples>> RecordingsFolder::read_next() {
   return take(path);
 }
 
+bool RecordingsFolder::all_taken() const {
+  return is_readable_ && std::ranges::all_of(files_, [](const auto& file) { return file.second.taken; });
+}
+
 std::vector<RawSamples> RecordingsFolder::awaiting() const {
   std::vector<RawSamples> first_blocks;
   for (const auto& [path, file] : files_)

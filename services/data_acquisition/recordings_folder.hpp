@@ -36,6 +36,8 @@ class RecordingsFolder {
   /// Reads one recording of those that the last look found: its blocks, or none where it was rejected or has changed
   /// since. Nothing where all are read.
   [[nodiscard]] std::optional<std::vector<RawSamples>> read_next();
+  /// Whether the last look found none that is still to be read.
+  [[nodiscard]] bool all_taken() const;
   /// The first blocks of the recordings that were read and are still there.
   [[nodiscard]] std::vector<RawSamples> awaiting() const;
 

@@ -1,9 +1,12 @@
-// A name as part of the id of a test, which stands in paths, commands and names of files: the one owner.
+// A name as part of an id, which stands in paths, commands and names of files: the one owner.
 #pragma once
 
 #include <cctype>
 #include <string>
 #include <string_view>
+
+#include "sealwatch/core/text.hpp"
+#include "sealwatch/message/topics.hpp"
 
 namespace sealwatch {
 
@@ -15,6 +18,18 @@ namespace sealwatch {
     result += allowed ? letter : '_';
   }
   return result;
+}
+
+/// An id of a stranger's that is part of ours stays well below the longest one.
+[[nodiscard]] inline std::string short_part(const std::string& id) {
+  constexpr std::size_t kLongestPart = 200;
+  return id.size() > kLongestPart ? content_hash(id) : id;
+}
+
+/// Senders that name blocks by recording and number alone give the same ids to tests of several assets, and so do assets
+/// that are alike in the ids of their tests: under this one the message is kept where its own is that of another asset's.
+[[nodiscard]] inline std::string id_beside_another_asset(const Message& message) {
+  return short_part(header_of(message).message_id) + "@" + asset_of(message);
 }
 
 /// Tests that differ in content have ids that differ, and messages of one id are told apart by their assets: no reason

@@ -18,6 +18,8 @@ class RetractedTests {
   /// A test that is known from now on: "all since a date" means the tests that are known when it is said.
   void know(const std::string& pst_id, std::optional<UtcTime> time) { tests_[pst_id] = time; }
 
+  [[nodiscard]] bool knows(const std::string& pst_id) const { return tests_.contains(pst_id); }
+
   void forget(const std::string& pst_id) { tests_.erase(pst_id); }
 
   /// From now on the tests that it means do not count, or count again; or a replacement was none. What was withdrawn

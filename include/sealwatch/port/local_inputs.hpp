@@ -20,8 +20,9 @@ class LocalInputs {
   using LayerAtRest = std::function<const Layer*(const std::string& asset_id)>;
 
   virtual ~LocalInputs() = default;
-  /// About once a second: the time to ask layers what they have concluded.
-  virtual void look(const LayerAtRest& at_rest) = 0;
+  /// About once a second: the time to ask layers what they have concluded. `woken` gives a layer that forgot its past it
+  /// back; to `awake` it is none.
+  virtual void look(const LayerAtRest& woken, const LayerAtRest& awake) = 0;
   /// What to call, in any thread, when there is something to take, before the first look.
   virtual void on_some(std::function<void()> /*call*/) {}
   /// Whether there is something to take.

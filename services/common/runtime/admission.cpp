@@ -147,13 +147,14 @@ Admission::Admission(std::map<std::string, UtcTime> commissioned, ConfiguredAsse
   for (const std::string& asset_id : assets_.names) note_name(asset_id);
 }
 
-void Admission::note(const Message& message, bool concluded) {
+bool Admission::note(const Message& message, bool concluded) {
   if (const auto* block = std::get_if<SampleBlock>(&message); block && !is_made_up(block->source_id))
     recorded_.insert(block->asset_id);
   const std::string asset_id = asset_of(message);
   note_asset(asset_id);
   const std::optional<std::int64_t> time_ns = time_of_test(message);
   const std::string& pst_id = header_of(message).pst_id;
+  bool is_news = !pst_id.empty() && !knows_test(asset_id, pst_id);
   auto& on_their_way = on_their_way_[asset_id];
   if (concluded)
     on_their_way.erase(pst_id);
@@ -172,7 +173,15 @@ void Admission::note(const Message& message, bool concluded) {
   // An act is told once; after a restart it stands among the sources of what answered it.
   std::vector<std::string> acts = header_of(message).source_ids;
   acts.push_back(header_of(message).message_id);
-  for (const std::string& id : acts) note_act(asset_id, id);
+  for (const std::string& id : acts) is_news = note_act(asset_id, id) || is_news;
+  return is_news;
+}
+
+bool Admission::knows_test(const std::string& asset_id, const std::string& pst_id) const {
+  const auto tests = tests_.find(asset_id);
+  const auto coming = on_their_way_.find(asset_id);
+  return (tests != tests_.end() && tests->second.knows(pst_id)) ||
+         (coming != on_their_way_.end() && coming->second.contains(pst_id));
 }
 
 void Admission::note_asset(const std::string& asset_id) {
@@ -201,17 +210,18 @@ void Admission::note_test(const Message& message, UtcTime time) {
   if (named.insert(time).second) tests.forget(unnamed);
 }
 
-void Admission::note_act(const std::string& asset_id, const std::string& act_id) {
-  if (is_replacement_id(act_id)) acts_[asset_id].replacements.insert(act_id);
+bool Admission::note_act(const std::string& asset_id, const std::string& act_id) {
+  if (is_replacement_id(act_id)) return acts_[asset_id].replacements.insert(act_id).second;
   const auto retraction = is_retraction_id(act_id) ? retraction_of(asset_id, act_id) : std::nullopt;
-  if (!retraction) return;
+  if (!retraction) return false;
   Acts& acts = acts_[asset_id];
-  if (!acts.retractions.insert(act_id).second) return;  // every answer to it names it
+  if (!acts.retractions.insert(act_id).second) return false;  // every answer to it names it
   if (means_nothing(asset_id, *retraction)) ++acts.idle;
   tests_[asset_id].apply(*retraction);
   if (retraction->since)
     std::erase_if(on_their_way_[asset_id], [&](const auto& one) { return one.second >= retraction->since; });
   heard_.erase(asset_id);
+  return true;
 }
 
 bool Admission::means_nothing(const std::string& asset_id, const Retraction& retraction) const {
@@ -278,15 +288,27 @@ std::optional<std::string> Admission::refusal_of_report(const Message& message, 
   return refusal_of_future_act(message, now);
 }
 
-/// A test may be retracted before it comes. But whoever retracts tests that never come retracts many.
-std::optional<std::string> Admission::refusal_of_idle(const Message& message) const {
+std::optional<Retraction> Admission::idle_retraction(const Message& message) const {
   const std::string asset_id = asset_of(message);
   const auto acts = acts_.find(asset_id);
-  const auto retraction = retraction_of(asset_id, header_of(message).message_id);
-  if (!retraction || acts == acts_.end() || acts->second.idle < kMostIdleRetractions) return std::nullopt;
-  if (!means_nothing(asset_id, *retraction)) return std::nullopt;
-  return "it means no test, retraction or replacement that is known, and " + std::to_string(acts->second.idle) +
-         " such ones of asset " + asset_id + " are there already; find out who sends them";
+  if (acts == acts_.end() || acts->second.idle < kMostIdleRetractions) return std::nullopt;
+  auto retraction = retraction_of(asset_id, header_of(message).message_id);
+  return retraction && means_nothing(asset_id, *retraction) ? retraction : std::nullopt;
+}
+
+/// A test may be retracted before it comes, a retraction withdrawn before it is heard. "All since a date" means what is
+/// known when it is said, and has nothing to wait for.
+bool Admission::is_ahead(const Message& message) const {
+  const auto idle = idle_retraction(message);
+  return idle && !idle->since;
+}
+
+std::optional<std::string> Admission::refusal_of_idle(const Message& message) const {
+  const auto idle = idle_retraction(message);
+  if (!idle || !idle->since) return std::nullopt;
+  return "it means no test that is known, and " + std::to_string(kMostIdleRetractions) +
+         " retractions that mean nothing known of asset " + asset_of(message) +
+         " are there already; find out who sends them";
 }
 
 /// What the layers say after an act (that a test is overdue, that tests were retracted) has the time of now or of a test.

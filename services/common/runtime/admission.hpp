@@ -37,7 +37,8 @@ namespace sealwatch {
 inline constexpr std::size_t kLongestId = 500;  ///< bytes
 inline constexpr std::size_t kLongestRemark = 4000;
 inline constexpr std::size_t kMostUnknownAssets = 64;
-/// Of an asset. Each is answered by every layer, with a forecast and an advice that are the same as before.
+/// Of an asset. Each is answered by every layer, with a forecast and an advice that are the same as before: more wait in
+/// the journal until what they mean is known, as a service may be behind others.
 inline constexpr std::size_t kMostIdleRetractions = 64;
 
 /// A text that no service takes: not UTF-8, too long, or an id that is not one visible line.
@@ -59,18 +60,24 @@ class Admission {
   /// When assets were commissioned, where it is known.
   explicit Admission(std::map<std::string, UtcTime> commissioned = {}, ConfiguredAssets assets = {});
   /// Takes note of its asset, of when a test was made, and of retractions. Of what others say of tests, from which
-  /// nothing may be concluded, `concluded` is false: of them only the newest date is known, until a retraction.
-  void note(const Message& message, bool concluded = true);
+  /// nothing may be concluded, `concluded` is false: of them only the newest date is known, until a retraction. Whether it
+  /// is of a test, or tells of an act, that was not known before.
+  bool note(const Message& message, bool concluded = true);
   /// Takes note of an asset alone.
   void note_asset(const std::string& asset_id);
   /// Of which assets two may give their tests the same ids, as far as it was not asked before.
   [[nodiscard]] std::vector<std::string> take_alike();
-  /// Takes note of an act of that id, if it is a retraction.
-  void note_act(const std::string& asset_id, const std::string& act_id);
+  /// Takes note of an act of that id, if it is a retraction or a replacement; whether it is new.
+  bool note_act(const std::string& asset_id, const std::string& act_id);
   /// Why nothing of its asset is taken in; none where it is.
   [[nodiscard]] std::optional<std::string> refusal_of_asset(const Message& message) const;
   /// Why the message of such an asset is not to be taken in; none for nearly all.
   [[nodiscard]] std::optional<std::string> refusal(const Message& message, UtcTime now) const;
+  /// Whether an act is to wait until what it means is known.
+  [[nodiscard]] bool is_ahead(const Message& message) const;
+  /// Whether a retraction of the asset changes nothing. A test that others conclude from is known, with its date, before
+  /// it is concluded here: else a service that is behind would refuse what others take.
+  [[nodiscard]] bool means_nothing(const std::string& asset_id, const Retraction& retraction) const;
   /// Whether the configuration names it, or it was taken without.
   [[nodiscard]] bool knows(const std::string& asset_id) const {
     return assets_.names.contains(asset_id) || unknown_.contains(asset_id);
@@ -84,15 +91,15 @@ class Admission {
  private:
   void note_name(const std::string& asset_id);
   void note_test(const Message& message, UtcTime time);
+  [[nodiscard]] bool knows_test(const std::string& asset_id, const std::string& pst_id) const;
   [[nodiscard]] std::optional<std::string> refusal_of_test(const RawSamples& raw) const;
   [[nodiscard]] std::optional<std::string> refusal_of_time(const Message& message, UtcTime now) const;
   [[nodiscard]] std::optional<std::string> refusal_of_future(const Message& message, UtcTime time, UtcTime now) const;
   /// The date of the asset's newest test that was not retracted.
   [[nodiscard]] std::optional<UtcTime> newest_test(const std::string& asset_id) const;
   [[nodiscard]] std::optional<std::string> refusal_of_report(const Message& message, UtcTime now) const;
-  /// Whether a retraction of the asset changes nothing. A test that others conclude from is known, with its date, before
-  /// it is concluded here: else a service that is behind would refuse what others take.
-  [[nodiscard]] bool means_nothing(const std::string& asset_id, const Retraction& retraction) const;
+  /// The retraction where it changes nothing and is beyond those that are answered all the same.
+  [[nodiscard]] std::optional<Retraction> idle_retraction(const Message& message) const;
   [[nodiscard]] std::optional<std::string> refusal_of_idle(const Message& message) const;
   [[nodiscard]] std::optional<std::string> refusal_of_future_act(const Message& message, UtcTime now) const;
 

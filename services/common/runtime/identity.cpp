@@ -1,6 +1,7 @@
 #include "services/common/runtime/identity.hpp"
 
 #include "sealwatch/core/text.hpp"
+#include "sealwatch/message/id_part.hpp"
 #include "sealwatch/message/replacement_id.hpp"
 #include "sealwatch/message/retraction.hpp"
 #include "services/common/message/json.hpp"
@@ -24,9 +25,6 @@ const MaintenanceEvent* as_replacement(const Message& message) {
   return event != nullptr && is_replacement(*event) && event->header.event_time_known ? event : nullptr;
 }
 
-/// An id of a stranger's that is part of ours stays well below the longest one.
-constexpr std::size_t kLongestPart = 200;
-
 }  // namespace
 
 void name_replacement(Message& message) {
@@ -35,13 +33,7 @@ void name_replacement(Message& message) {
   const UtcTime time{event->header.event_time_ns};
   const std::string own = event->header.message_id;
   if (may_report(own, event->asset_id, event->kind) && time_of_replacement(own) == time) return;
-  header_of(message).message_id =
-      replacement_id_of(own.size() > kLongestPart ? content_hash(own) : own, event->asset_id, event->kind, time);
-}
-
-std::string id_beside_another_asset(const Message& message) {
-  const std::string& own = header_of(message).message_id;
-  return (own.size() > kLongestPart ? content_hash(own) : own) + "@" + asset_of(message);
+  header_of(message).message_id = replacement_id_of(short_part(own), event->asset_id, event->kind, time);
 }
 
 bool is_numbered(const Message& message) {

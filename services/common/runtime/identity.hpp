@@ -26,10 +26,6 @@ struct EarlierInputs {
 /// sender with ids of its own ("cmms-4711") becomes part of one.
 void name_replacement(Message& message);
 
-/// Senders that name blocks by recording and number alone give the same ids to tests of several assets: under this one
-/// the message is kept where its own is that of another asset's.
-[[nodiscard]] std::string id_beside_another_asset(const Message& message);
-
 /// The id of an input: its own; else, for a sender that gives none, "<topic>/<asset>/<hash of content>", of a
 /// replacement with kind and time as name_replacement() has them, with "#2", "#3" behind the hash for later messages of
 /// equal content. Nothing when the message was received before: a sender's last message comes again whenever a service

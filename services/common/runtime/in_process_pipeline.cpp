@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "sealwatch/message/id_part.hpp"
 #include "services/common/runtime/identity.hpp"
 
 namespace sealwatch {
@@ -119,7 +120,10 @@ void InProcessPipeline::conclude(Reader& reader, const std::string& asset_id) {
 void InProcessPipeline::take(Reader& reader, LaneResult result) {
   Reader::OfAsset& of_asset = reader.assets[result.asset_id];
   for (Message& output : result.conclusion.outputs) {
-    if (!concluded_.insert(header_of(output).message_id).second) continue;
+    std::string& id = header_of(output).message_id;
+    const auto owner = concluded_.find(id);
+    if (owner != concluded_.end() && owner->second != result.asset_id) id = id_beside_another_asset(output);
+    if (!concluded_.emplace(id, result.asset_id).second) continue;
     if (observer_) observer_(output);
     remember(of_asset.past, output);
     waiting_.push_back(std::move(output));

@@ -7,7 +7,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -44,7 +43,7 @@ class InProcessPipeline {
   std::vector<std::unique_ptr<Reader>> readers_;
   Observer observer_;
   OnSetAside on_set_aside_;
-  std::set<std::string> concluded_;
+  std::map<std::string, std::string> concluded_;  ///< asset by message id
   std::deque<Message> waiting_;
   std::function<bool()> is_over_ = [] { return false; };
   bool hangs_ = false;

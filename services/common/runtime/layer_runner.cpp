@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "sealwatch/message/id_part.hpp"
 #include "services/common/runtime/confirmed_positions.hpp"
 #include "services/common/runtime/identity.hpp"
 #include "services/common/runtime/log.hpp"
@@ -177,6 +178,7 @@ Status LayerRunner::take_ready() {
     last_work_ = steady_clock::now();
     holds_memory_ = true;
   }
+  if (Status status = give_acts_ahead(); !status) return status;
   for (; !ready_.empty(); ready_.pop_front())
     if (Status status = take(std::move(ready_.front())); !status) return status;
   if (Status status = let_lanes_work(); !status) return status;
@@ -257,6 +259,7 @@ Status LayerRunner::take(Message message) {
   auto refused = admission_.refusal(message, clock_.now());
   if (!refused) refused = refusal_of_confirmation(message);
   if (!refused) refused = refusal_of_waiting(message);
+  if (!refused) refused = refusal_of_ahead(message);
   if (refused) {
     note_error(std::string(name_of(topic_of(message))) + " refused: " + *refused);
     log_message(LogLevel::warn, "refused", message, {{"reason", *refused}});
@@ -278,9 +281,10 @@ Status LayerRunner::take(Message message) {
   const auto input = std::make_shared<const Message>(without_stamps(std::move(message)));
   taken_.push_back({input, stream, state});
   if (state == InputState::awaiting) await(input, clock_.now());
+  if (state == InputState::ahead) ++acts_ahead_[asset_id];
   if (state == InputState::consumed && !refused) confirm(*input);
   if (state != InputState::open) return {};
-  admission_.note(*input, false);
+  if (admission_.note(*input, false)) heard_of_.insert(asset_id);
   const auto* const raw = std::get_if<RawSamples>(input.get());
   if (raw != nullptr) note_good_test(*raw);
   if (raw == nullptr || raw->block_number == 0) look_for_future_test(asset_id);
@@ -386,7 +390,8 @@ Status LayerRunner::keep(Conclusion conclusion) {
     forget_damage(header_of(**kept).message_id);
     note_alarms_of(**kept);
     note_advice_of(**kept);
-    admission_.note(**kept);  // data acquisition knows a test by its name only from its own blocks on
+    // Data acquisition knows a test by its name only from its own blocks on.
+    if (admission_.note(**kept)) heard_of_.insert(asset_of(**kept));
     outbox_.add(std::move(**kept));
   }
   for (const Refusal& refused : conclusion.refused)
@@ -416,7 +421,7 @@ Status LayerRunner::let_time_pass() {
     if (woken && asleep_.contains(asset_id)) woken = recall(asset_id);
     return woken ? at_rest(asset_id) : nullptr;
   };
-  if (options_.local_inputs) options_.local_inputs->look(woken_at_rest);
+  if (options_.local_inputs) options_.local_inputs->look(woken_at_rest, at_rest);
   if (!woken) return woken;
   const auto now = steady_clock::now();
   if (now - started_ < options_.settling || (full_since_ && now - *full_since_ < options_.longest_wait)) return {};

@@ -228,6 +228,11 @@ class LayerRunner {
   /// Writes down who said it, and what becomes of it: `state` for what no person said.
   [[nodiscard]] InputState note_act(const Message& message, const std::optional<std::string>& refused,
                                     InputState state);
+  [[nodiscard]] std::optional<std::string> refusal_of_ahead(const Message& message) const;
+  /// Gives layers the acts that were ahead of what they mean, as far as that is known now.
+  [[nodiscard]] Status give_acts_ahead();
+  [[nodiscard]] Status give_acts_ahead(const std::string& asset_id);
+  void give(const std::shared_ptr<const Message>& act);
   /// Gives the layer what this confirms, and forgets what it rejects.
   void confirm(const Message& message);
   [[nodiscard]] Status record_acts();
@@ -240,6 +245,7 @@ class LayerRunner {
   [[nodiscard]] Status look_at_own_acts();
   /// Where the journal is new and others' records are not, what people said to this service is lost: an alarm.
   [[nodiscard]] Status compare_acts();
+  [[nodiscard]] bool all_heard() const;
   [[nodiscard]] Status record(const OperatorAct& act);
   /// What a layer does not act upon.
   [[nodiscard]] Status tell(const Refusal& refused);
@@ -286,6 +292,8 @@ class LayerRunner {
   std::map<std::pair<Topic, std::string>, std::string> last_unnumbered_;  ///< of the running batch, by topic and asset
   std::map<std::string, std::shared_ptr<const Message>> awaiting_;        ///< acts that wait for a second person, by id
   std::map<std::string, InputState> no_longer_awaiting_;  ///< ids of those whose wait is over, of this batch
+  std::map<std::string, std::size_t> acts_ahead_;         ///< acts that wait for what they mean, by asset
+  std::set<std::string> heard_of_;                        ///< of those assets, the ones of which something new is known
   std::size_t acts_on_unknown_assets_ = 0;                ///< recorded while the alarm of them stands
   std::vector<OperatorAct> acts_;                         ///< of the running batch
   AuditAnchor last_act_;                                  ///< of the own record
@@ -344,8 +352,8 @@ class LayerRunner {
   std::map<Topic, KeptSamples> kept_samples_;
   std::chrono::steady_clock::time_point next_retention_{};
   std::vector<SetAside> set_aside_;
-  std::map<std::string, std::set<std::string>> set_aside_elsewhere_;  ///< tests, by the service that did so
-  std::uint64_t waiting_in_vain_ = 0;                                 ///< open inputs of those tests
+  std::map<std::string, std::set<Journal::Test>> set_aside_elsewhere_;  ///< by the service that did so
+  std::uint64_t waiting_in_vain_ = 0;                                   ///< open inputs of those tests
   std::chrono::steady_clock::time_point started_{};
   std::chrono::steady_clock::time_point last_second_{};
   std::chrono::steady_clock::time_point last_work_{};  ///< when the last batch began

@@ -14,12 +14,13 @@ namespace {
 
 constexpr const char* kAwaitsConfirmation = "awaits_confirmation";
 constexpr const char* kTaken = "taken";
+constexpr const char* kAhead = "waits until what it means is known here";
 constexpr std::ptrdiff_t kMostAwaiting = 64;  ///< of an asset
+/// Of an asset: a service that is behind has not so many meant acts before it, and whoever sends more floods.
+constexpr std::size_t kMostAhead = 1000;
 constexpr std::size_t kHashLength = 64;
 /// Of a second: who invents records invents many.
 constexpr std::size_t kMostNewAnchors = 16;
-/// After so long whoever runs was heard: what others record from then on is not older than the own journal.
-constexpr std::chrono::minutes kAllHeard{1};
 
 std::string who_said(const Message& message) {
   const auto act = act_of(message, {}, {});
@@ -79,6 +80,9 @@ Status LayerRunner::restore_awaiting() {
   const auto waiting = journal_.awaiting();
   if (!waiting) return fail(waiting.error());
   for (const Journal::Awaiting& one : *waiting) await(std::make_shared<const Message>(one.message), one.received);
+  auto ahead = journal_.acts_ahead();
+  if (!ahead) return fail(ahead.error());
+  acts_ahead_ = std::move(*ahead);
   return {};
 }
 
@@ -125,12 +129,52 @@ std::optional<std::string> LayerRunner::refusal_of_waiting(const Message& messag
          " wait for a second person already; confirm or reject those, and say it again";
 }
 
+std::optional<std::string> LayerRunner::refusal_of_ahead(const Message& message) const {
+  const auto ahead = acts_ahead_.find(asset_of(message));
+  if (ahead == acts_ahead_.end() || ahead->second < kMostAhead || !admission_.is_ahead(message)) return std::nullopt;
+  return "it means no test, retraction or replacement that is known, and " + std::to_string(kMostAhead) +
+         " such ones of asset " + asset_of(message) + " wait already; find out who sends them";
+}
+
 InputState LayerRunner::note_act(const Message& message, const std::optional<std::string>& refused, InputState state) {
   const bool waits = !refused && waits_for_second(message);
-  const std::string outcome = refused ? *refused : waits ? "waits for a second person" : kTaken;
+  const bool is_ahead = !refused && !waits && admission_.is_ahead(message);
+  const std::string outcome = refused ? *refused : waits ? "waits for a second person" : is_ahead ? kAhead : kTaken;
   if (auto act = act_of(message, clock_.now(), outcome)) acts_.push_back(std::move(*act));
   if (refused || act_confirmed_by(message)) return InputState::consumed;
-  return waits ? InputState::awaiting : state;
+  return waits ? InputState::awaiting : is_ahead ? InputState::ahead : state;
+}
+
+Status LayerRunner::give_acts_ahead() {
+  for (const std::string& asset_id : std::exchange(heard_of_, {}))
+    if (acts_ahead_.contains(asset_id))
+      if (Status given = give_acts_ahead(asset_id); !given) return given;
+  return {};
+}
+
+/// A service that is behind hears of a retraction before the test: refused here alone, the test would count.
+Status LayerRunner::give_acts_ahead(const std::string& asset_id) {
+  const auto ids = journal_.acts_ahead(asset_id);
+  if (!ids) return fail(ids.error());
+  for (const std::string& act_id : *ids) {
+    const auto retraction = retraction_of(asset_id, act_id);
+    if (!retraction || admission_.means_nothing(asset_id, *retraction)) continue;
+    auto act = journal_.input(act_id);
+    if (!act) return fail(act.error());
+    if (!*act) continue;
+    if (auto taken = act_of(**act, clock_.now(), kTaken)) acts_.push_back(std::move(*taken));
+    no_longer_awaiting_[act_id] = InputState::open;
+    if (--acts_ahead_[asset_id] == 0) acts_ahead_.erase(asset_id);
+    give(std::make_shared<const Message>(std::move(**act)));
+    heard_of_.insert(asset_id);  // what takes it back may wait for it
+  }
+  return {};
+}
+
+void LayerRunner::give(const std::shared_ptr<const Message>& act) {
+  admission_.note(*act, false);
+  look_for_future_test(asset_of(*act));
+  lanes_.add(asset_of(*act), header_of(*act).message_id, act);
 }
 
 void LayerRunner::confirm(const Message& message) {
@@ -144,10 +188,7 @@ void LayerRunner::confirm(const Message& message) {
     taken_[taken->second].state = rejects(message) ? InputState::consumed : InputState::open;  // both in one batch
   else
     no_longer_awaiting_[*act_id] = rejects(message) ? InputState::consumed : InputState::open;
-  if (rejects(message)) return;
-  admission_.note(*act, false);
-  look_for_future_test(asset_of(*act));
-  lanes_.add(asset_of(*act), *act_id, act);
+  if (!rejects(message)) give(act);
 }
 
 Result<std::map<std::string, std::vector<LayerRunner::PastAct>>> LayerRunner::past_retractions() {
@@ -225,14 +266,21 @@ Status LayerRunner::look_at_own_acts() {
   return {};
 }
 
+/// What others record from then on is not older than the own journal. A service that is down may have an older record.
+bool LayerRunner::all_heard() const {
+  const auto& services = options_.strangers.services;
+  return !services.empty() && std::ranges::all_of(services, [this](const std::string& service) {
+    return service == kind_->name() || first_heard_.contains(service);
+  });
+}
+
 /// The neighbours' messages make the conclusions again. Acts were told once, by people who are gone: a retracted test
 /// would count again in this service alone, and nobody would know.
 Status LayerRunner::compare_acts() {
   if (!is_new_) return {};
   const bool takes_acts = std::ranges::find(kind_->inputs(), Topic::maintenance_event) != kind_->inputs().end();
   const bool is_lost = (takes_acts && !has_older_acts_.empty()) || !has_read_more_.empty();
-  const bool all_heard = !first_heard_.empty() && std::chrono::steady_clock::now() - started_ > kAllHeard;
-  if (!is_lost && !all_heard) return {};
+  if (!is_lost && !all_heard()) return {};
   is_new_ = false;
   const std::string& other = has_read_more_.empty() ? has_older_acts_ : has_read_more_;
   const SetAside lost = reads_samples() ? samples_lost(kind_->name(), other, clock_.now())

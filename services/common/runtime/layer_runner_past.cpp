@@ -69,6 +69,7 @@ Status LayerRunner::recall(const std::string& asset_id) {
   if (desk_ && advice) desk_->stand(*advice, clock_.now());
   if (Status recalled = recall_inputs(asset_id); !recalled) return recalled;
   look_for_future_test(asset_id);
+  heard_of_.insert(asset_id);
   return {};
 }
 

@@ -106,14 +106,14 @@ Status LayerRunner::try_again_what_was_asked() {
 void LayerRunner::note_set_aside_elsewhere(const ServiceStatus& other) {
   const auto& services = options_.strangers.services;
   if (!services.empty() && std::ranges::find(services, other.service) == services.end()) return;
-  std::set<std::string> tests;
+  std::set<Journal::Test> tests;
   for (const ServiceAlarm& alarm : other.alarms)
-    if (alarm.kind == kSetAside && !alarm.pst_id.empty()) tests.insert(alarm.pst_id);
+    if (alarm.kind == kSetAside && !alarm.pst_id.empty()) tests.insert({alarm.asset_id, alarm.pst_id});
   set_aside_elsewhere_[other.service] = std::move(tests);
 }
 
 Status LayerRunner::count_what_waits_in_vain() {
-  std::set<std::string> tests;
+  std::set<Journal::Test> tests;
   for (const auto& [service, of_service] : set_aside_elsewhere_) tests.insert(of_service.begin(), of_service.end());
   waiting_in_vain_ = 0;
   if (tests.empty()) return {};

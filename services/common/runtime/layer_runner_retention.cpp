@@ -17,8 +17,9 @@ constexpr std::size_t kAtOnce = 16;
 bool LayerRunner::is_set_aside_anywhere(const std::string& asset_id, const std::string& pst_id) const {
   const bool here = std::ranges::any_of(
       set_aside_, [&](const SetAside& one) { return one.asset_id == asset_id && one.pst_id == pst_id; });
-  return here || std::ranges::any_of(set_aside_elsewhere_,
-                                     [&](const auto& of_service) { return of_service.second.contains(pst_id); });
+  return here || std::ranges::any_of(set_aside_elsewhere_, [&](const auto& of_service) {
+           return of_service.second.contains({asset_id, pst_id});
+         });
 }
 
 Status LayerRunner::drop_old_samples() {

@@ -1,6 +1,7 @@
 #include "services/common/store/journal.hpp"
 
 #include "sealwatch/message/blank.hpp"
+#include "sealwatch/message/id_part.hpp"
 #include "sealwatch/message/outside.hpp"
 #include "services/common/store/database.hpp"
 #include "services/common/store/log_sync.hpp"
@@ -182,6 +183,8 @@ Result<std::optional<Message>> Journal::add_output(Message message, UtcTime publ
   return database_->guard("keeping an output", [&]() -> std::optional<Message> {
     const std::uint64_t sequence = database_->written[topic_of(message)] + 1;
     message = stamped(std::move(message), {}, 0, 0);
+    const auto owner = database_->statements->asset_of_output(header_of(message).message_id);
+    if (owner && *owner != asset_of(message)) header_of(message).message_id = id_beside_another_asset(message);
     if (auto mended = database_->fill_place(message, publishing_time)) return mended;
     if (!database_->statements->add_output(database_->last_ordinal + 1, message, sequence, publishing_time))
       return std::nullopt;

@@ -15,6 +15,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sealwatch/core/result.hpp"
@@ -45,7 +46,8 @@ struct SetAside {
   std::string reason;
 };
 
-enum class InputState { open, consumed, set_aside, awaiting };  // awaiting: kept until a second person confirms it
+/// awaiting: an act that is kept until a second person confirms it; ahead: until what it means is known.
+enum class InputState { open, consumed, set_aside, awaiting, ahead };
 
 /// What a committed batch is safe from at once. A power cut takes back the last batches that are safe from kills alone,
 /// always the newest first, until they are on the disk (Journal::to_disk).
@@ -104,8 +106,9 @@ class Journal {
   [[nodiscard]] Result<std::vector<std::string>> open_inputs_of(const std::string& asset_id);
   /// An input that is kept; none when it was consumed.
   [[nodiscard]] Result<std::optional<Message>> input(const std::string& message_id);
+  using Test = std::pair<std::string, std::string>;  // asset and PST id: two assets may give theirs the same ids
   /// How many open inputs are of these tests.
-  [[nodiscard]] Result<std::uint64_t> open_inputs_of_tests(const std::set<std::string>& pst_ids);
+  [[nodiscard]] Result<std::uint64_t> open_inputs_of_tests(const std::set<Test>& tests);
   /// Outputs of one topic's stream, first <= sequence <= last, at most `most`, stamped.
   [[nodiscard]] Result<std::vector<Message>> outputs(Topic topic, std::uint64_t first, std::uint64_t last,
                                                      std::size_t most);
@@ -137,7 +140,8 @@ class Journal {
                                  InputState state);
   /// Marks an input as not needed again and drops its message; unknown ids are passed over.
   [[nodiscard]] Status consume(const std::string& message_id);
-  /// Numbers and keeps an output and returns it stamped, or nothing when this message id was concluded before.
+  /// Numbers and keeps an output and returns it stamped, or nothing when it was concluded before. Beside one of its id that
+  /// is another asset's, it is kept under another.
   [[nodiscard]] Result<std::optional<Message>> add_output(Message message, UtcTime publishing_time);
   [[nodiscard]] Status set_position(const StreamPosition& position);
   /// Notes that its writer now sends a known input under this number.
@@ -182,7 +186,11 @@ class Journal {
   };
   /// What waits for a second person, in the order of receipt.
   [[nodiscard]] Result<std::vector<Awaiting>> awaiting();
-  /// Ends the wait of one of them: open or consumed.
+  /// Of each asset with acts that are ahead, their number.
+  [[nodiscard]] Result<std::map<std::string, std::size_t>> acts_ahead();
+  /// Ids of those of one asset, in the order of receipt.
+  [[nodiscard]] Result<std::vector<std::string>> acts_ahead(const std::string& asset_id);
+  /// Ends the wait of an act that is awaiting or ahead: open or consumed.
   [[nodiscard]] Status end_awaiting(const std::string& message_id, InputState state);
 
   // The quarantine. It is written between begin and commit; askers write to it from other processes (quarantine_desk.hpp).

@@ -191,7 +191,7 @@ void Journal::Database::mend_quarantine() {
 
 void Journal::Database::mend_inputs() {
   // A consumed input has no payload any more: one that has was not consumed.
-  sql << "UPDATE inputs SET consumed = 0 WHERE payload IS NOT NULL AND consumed NOT IN (0, 2, 3)";
+  sql << "UPDATE inputs SET consumed = 0 WHERE payload IS NOT NULL AND consumed NOT IN (0, 2, 3, 4)";
   long long looked_at = 0;
   for (const DamagedRow& row : damaged_rows(sql, false, steady_clock::time_point::max(), looked_at)) {
     if (put_checksum_right(sql, row, false)) continue;

@@ -11,6 +11,8 @@ using soci::into;
 using soci::use;
 
 /// The inputs that go with a message: all of its test, or itself alone.
+/// As the index of what is kept has it: the ids of twenty years are not looked through.
+constexpr const char* kAhead = " WHERE (payload IS NOT NULL OR consumed <> 1) AND consumed = 4";
 constexpr const char* kGoesWith = " AND (message_id = :id OR (pst_id = :pst AND pst_id <> '' AND asset_id = :asset))";
 
 /// Moves them from one state to another and says how many there were.
@@ -55,14 +57,15 @@ Result<std::optional<Message>> Journal::input(const std::string& message_id) {
   });
 }
 
-Result<std::uint64_t> Journal::open_inputs_of_tests(const std::set<std::string>& pst_ids) {
+Result<std::uint64_t> Journal::open_inputs_of_tests(const std::set<Test>& tests) {
   return database_->guard("counting open inputs", [&] {
     std::uint64_t found = 0;
-    std::string pst_id;
+    Test test;
     soci::statement statement =
-        (database_->sql.prepare << "SELECT pst_id FROM inputs WHERE consumed = 0 ORDER BY receipt", into(pst_id));
+        (database_->sql.prepare << "SELECT asset_id, pst_id FROM inputs WHERE consumed = 0 ORDER BY receipt",
+         into(test.first), into(test.second));
     statement.execute();
-    while (statement.fetch()) found += pst_ids.contains(pst_id) ? 1 : 0;
+    while (statement.fetch()) found += tests.contains(test) ? 1 : 0;
     return found;
   });
 }
@@ -134,12 +137,37 @@ Result<std::vector<Journal::Awaiting>> Journal::awaiting() {
   return waiting;
 }
 
+Result<std::map<std::string, std::size_t>> Journal::acts_ahead() {
+  return database_->guard("counting acts that are ahead", [&] {
+    std::map<std::string, std::size_t> found;
+    std::string asset_id;
+    soci::statement statement =
+        (database_->sql.prepare << std::string("SELECT asset_id FROM inputs") + kAhead, into(asset_id));
+    statement.execute();
+    while (statement.fetch()) ++found[asset_id];
+    return found;
+  });
+}
+
+Result<std::vector<std::string>> Journal::acts_ahead(const std::string& asset_id) {
+  return database_->guard("looking for acts that are ahead", [&] {
+    std::vector<std::string> ids;
+    std::string id;
+    soci::statement statement = (database_->sql.prepare << std::string("SELECT message_id FROM inputs") + kAhead +
+                                                               " AND asset_id = :asset ORDER BY receipt",
+                                 use(asset_id, "asset"), into(id));
+    statement.execute();
+    while (statement.fetch()) ids.push_back(id);
+    return ids;
+  });
+}
+
 Status Journal::end_awaiting(const std::string& message_id, InputState state) {
   return database_->guard("ending an act's wait", [&] {
     const bool opened = state == InputState::open;
     const std::string change = opened ? "consumed = 0" : "consumed = 1, payload = NULL, checksum = NULL";
     soci::statement statement =
-        (database_->sql.prepare << "UPDATE inputs SET " + change + " WHERE consumed = 3 AND message_id = :id",
+        (database_->sql.prepare << "UPDATE inputs SET " + change + " WHERE consumed IN (3, 4) AND message_id = :id",
          use(message_id, "id"));
     statement.execute(true);
     if (opened) database_->open_inputs += static_cast<std::uint64_t>(statement.get_affected_rows());

@@ -23,6 +23,8 @@ bool read_row(soci::statement& query) {
 JournalStatements::JournalStatements(soci::session& sql)
     : find_input_((sql.prepare << "SELECT asset_id FROM inputs WHERE message_id = :message", into(asset_id_),
                    use(message_id_, "message"))),
+      find_output_((sql.prepare << "SELECT asset_id FROM outputs WHERE message_id = :message", into(asset_id_),
+                    use(message_id_, "message"))),
       find_unnumbered_((sql.prepare << "SELECT message_id FROM inputs WHERE topic = :topic AND asset_id = :asset"
                                        " AND sequence = 0 ORDER BY receipt DESC LIMIT 1",
                         into(message_id_), use(topic_, "topic"), use(asset_id_, "asset"))),
@@ -53,6 +55,11 @@ JournalStatements::JournalStatements(soci::session& sql)
 std::optional<std::string> JournalStatements::asset_of_input(const std::string& message_id) {
   message_id_ = message_id;
   return read_row(find_input_) ? std::optional(asset_id_) : std::nullopt;
+}
+
+std::optional<std::string> JournalStatements::asset_of_output(const std::string& message_id) {
+  message_id_ = message_id;
+  return read_row(find_output_) ? std::optional(asset_id_) : std::nullopt;
 }
 
 std::string JournalStatements::last_unnumbered_input(Topic topic, const std::string& asset_id) {

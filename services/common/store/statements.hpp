@@ -19,6 +19,7 @@ class JournalStatements {
 
   /// None where there is no input of that id.
   [[nodiscard]] std::optional<std::string> asset_of_input(const std::string& message_id);
+  [[nodiscard]] std::optional<std::string> asset_of_output(const std::string& message_id);
   [[nodiscard]] std::string last_unnumbered_input(Topic topic, const std::string& asset_id);
   void add_input(long long receipt, const Message& message, const StreamPosition& stream, UtcTime received,
                  InputState state);
@@ -46,6 +47,7 @@ class JournalStatements {
   soci::indicator payload_there_ = soci::i_ok;
 
   soci::statement find_input_;
+  soci::statement find_output_;
   soci::statement find_unnumbered_;
   soci::statement insert_input_;
   soci::statement consume_input_;

@@ -53,6 +53,17 @@ TEST_F(WithoutAdvice, TellsEarlierTestsFromKnownOnes) {
   EXPECT_THAT(log_.without_advice(), HasSubstr("2 tests are earlier than"));
 }
 
+/// Two assets may give their tests the same ids.
+TEST_F(WithoutAdvice, CountsTheTestsOfEachAsset) {
+  Message other = of_test<RemainingLife>("2031-05-12");
+  std::get<RemainingLife>(other).asset_id = "B";
+  log_.take(other);
+  log_.take(of_test<RemainingLife>("2031-05-12"));
+  EXPECT_THAT(log_.without_advice(), HasSubstr("2 tests gave no new advice"));
+  log_.take(of_test<Advisory>("2031-05-12"));
+  EXPECT_THAT(log_.without_advice(), HasSubstr("1 test gave no new advice"));
+}
+
 TEST_F(WithoutAdvice, IsSilentWhereEachTestGaveAdvice) {
   log_.take_earlier(of_test<RemainingLife>("2031-04-12"));
   log_.take(of_test<RemainingLife>("2031-05-12"));

@@ -143,7 +143,7 @@ class EndlessLayer final : public Layer {
 /// One block without end, by a reader that cannot be stopped.
 class LocalBlocks final : public LocalInputs {
  public:
-  void look(const LayerAtRest&) override {}
+  void look(const LayerAtRest&, const LayerAtRest&) override {}
   bool has_some() override { return true; }
   std::vector<Message> take() override { return {RawSamples()}; }
   bool stop(std::chrono::milliseconds) override { return false; }

@@ -86,6 +86,124 @@ MaintenanceEvent replaced(const std::string& who, UtcTime at) {
   return event;
 }
 
+/// Concludes from each test, and from what people say of it, that it came.
+class TestsAndActsLayer final : public Layer {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "advisory_generation"; }
+  [[nodiscard]] std::span<const Topic> inputs() const override { return kInputs; }
+  [[nodiscard]] std::span<const Topic> outputs() const override { return kOutputs; }
+  void restore(const Message& /*own*/) override {}
+  [[nodiscard]] Conclusion receive(const Message& input) override {
+    Advisory advisory;
+    advisory.asset_id = asset_of(input);
+    advisory.header = header("advisory/" + header_of(input).message_id, header_of(input).pst_id);
+    return {{advisory}, {header_of(input).message_id}};
+  }
+
+ private:
+  static constexpr std::array kInputs = {Topic::health_report, Topic::maintenance_event};
+  static constexpr std::array kOutputs = {Topic::advisory};
+};
+
+class EarlyRetractionTest : public ActsTest {
+ protected:
+  EarlyRetractionTest() {
+    start_anew();
+    for (std::size_t k = 0; k < kMostIdleRetractions; ++k) say(*process_, retracted("none" + std::to_string(k)));
+    EXPECT_TRUE(
+        step_until([this] { return concluded().size() == kMostIdleRetractions; }, [this] { process_->step(); }));
+  }
+  void start_anew() {
+    process_.reset();
+    process_ = std::make_unique<Process>(
+        network_, [] { return std::make_unique<TestsAndActsLayer>(); }, place_.connection());
+    process_->start();
+  }
+  MaintenanceEvent act(std::string_view kind, const std::string& what) {
+    MaintenanceEvent event = replaced("J. Silva", process_->clock().now());
+    event.kind = kind;
+    event.header.message_id = retraction_id("A", kind, what, process_->clock().now());
+    return event;
+  }
+  MaintenanceEvent retracted(const std::string& pst_id) { return act(kTestRetracted, pst_id); }
+  static Message test_of(const std::string& pst_id) {
+    HealthReport report;
+    report.asset_id = "A";
+    report.header = header("health_report/" + pst_id, pst_id);
+    return report;
+  }
+  std::vector<std::string> concluded() {
+    std::vector<std::string> ids;
+    for (const Message& output : process_->outputs()) ids.push_back(header_of(output).message_id.substr(9));
+    return ids;
+  }
+  std::vector<std::string> concluded_since() {
+    auto ids = concluded();
+    ids.erase(ids.begin(), ids.begin() + kMostIdleRetractions);
+    return ids;
+  }
+  /// Whether so many conclusions come; those from acts that waited come some steps later.
+  bool concludes(std::size_t count) {
+    return step_until([&] { return concluded_since().size() >= count; }, [this] { process_->step(); });
+  }
+  std::unique_ptr<Process> process_;
+};
+
+/// A service that is behind has not heard of a test that others know, and retractions of no test stand there in plenty.
+TEST_F(EarlyRetractionTest, OfATestThatIsNotHeardOfYetCountsOnceItComes) {
+  const Message early = retracted("behind");
+  say(*process_, early);
+  EXPECT_EQ(acts().back().act.outcome.find("refused"), std::string::npos) << acts().back().act.outcome;
+  EXPECT_THAT(concluded_since(), IsEmpty()) << "nothing is concluded from what means nothing";
+  start_anew();
+  say(*process_, test_of("another"));
+  EXPECT_THAT(concluded_since(), ElementsAre("health_report/another"));
+  say(*process_, test_of("behind"));
+  EXPECT_TRUE(concludes(3));
+  EXPECT_THAT(concluded_since(),
+              ElementsAre("health_report/another", "health_report/behind", header_of(early).message_id));
+  EXPECT_EQ(acts().back().act.outcome, "taken");
+  EXPECT_EQ(acts().back().act.subject, header_of(early).message_id);
+  say(*process_, early);
+  EXPECT_THAT(concluded_since(), SizeIs(3)) << "the same message again";
+}
+
+TEST_F(EarlyRetractionTest, ThatIsWithdrawnIsSoOnceItsTestComes) {
+  const Message early = retracted("behind");
+  const Message withdrawn = act(kRetractionWithdrawn, header_of(early).message_id);
+  say(*process_, withdrawn);
+  say(*process_, early);
+  say(*process_, test_of("behind"));
+  say(*process_, test_of("later"));
+  EXPECT_TRUE(concludes(4));
+  EXPECT_THAT(concluded_since(),
+              ::testing::UnorderedElementsAre("health_report/behind", header_of(early).message_id,
+                                              header_of(withdrawn).message_id, "health_report/later"));
+}
+
+TEST_F(EarlyRetractionTest, SoManyWaitAndLaterOnesAreRefused) {
+  const MaintenanceEvent early = retracted("behind");
+  say(*process_, early);
+  for (int k = 0; k < 1000; ++k) EXPECT_TRUE(operator_.publish(Message(retracted("invented" + std::to_string(k)))));
+  for (int k = 0; k < 50; ++k) process_->step();
+  EXPECT_THAT(acts().back().act.outcome, HasSubstr("1000 such ones of asset A wait already"));
+  EXPECT_THAT(concluded_since(), IsEmpty());
+  say(*process_, test_of("behind"));
+  EXPECT_TRUE(concludes(2));
+  EXPECT_THAT(concluded_since(), ElementsAre("health_report/behind", early.header.message_id));
+}
+
+/// Killed when the test was known, and before the act was given.
+TEST_F(EarlyRetractionTest, CountsAfterAKillBetweenTheTwo) {
+  const Message early = retracted("behind");
+  say(*process_, early);
+  EXPECT_TRUE(operator_.publish(test_of("behind")));
+  process_->step();
+  start_anew();
+  EXPECT_TRUE(concludes(2));
+  EXPECT_THAT(concluded_since(), ElementsAre("health_report/behind", header_of(early).message_id));
+}
+
 TEST_F(ActsTest, EachIsRecordedOnceWithWhoAndWhat) {
   const auto process = start();
   say(*process, seen("J. Silva"));
@@ -272,6 +390,19 @@ TEST_F(LostJournal, IsAnAlarmWhereOthersHaveARecordOfActsUntilSomebodySaysThemAg
   process = start();
   hear(*process, with_acts(2));
   EXPECT_THAT(alarms(), IsEmpty());
+}
+
+/// For a minute only the neighbour without a record ran: who has one was started again later.
+TEST_F(LostJournal, IsNoticedWheneverTheOneWithARecordIsHeard) {
+  RunnerOptions options = fast_options();
+  options.strangers.services = {"data_manipulation", "state_detection", "advisory_generation"};
+  const auto process = start(options);
+  ServiceStatus without = with_acts(0);
+  without.service = "data_manipulation";
+  without.writer_id = "data_manipulation-1";
+  hear(*process, without);
+  hear(*process, with_acts(1));
+  EXPECT_THAT(alarms(), ElementsAre(HasSubstr("state_detection has a record")));
 }
 
 TEST_F(LostJournal, ANewOneWhoseNeighboursAreNewTooIsNone) {

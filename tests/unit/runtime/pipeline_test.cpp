@@ -48,6 +48,23 @@ TEST(InProcessPipelineTest, ConcludesTheSameAsServicesDo) {
   EXPECT_EQ(concluded, in_process(blocks)) << "and in the same order every time";
 }
 
+/// Which of the two keeps the id goes by who is first, and services conclude from both at once.
+TEST(InProcessPipelineTest, TestsOfTwoAssetsWithOneIdAreConcludedAsServicesDo) {
+  std::vector<RawSamples> blocks = blocks_of_tests(2, {"XT_1", "XT 1"});
+  for (RawSamples& block : blocks)
+    block.recording_id = "april" + block.recording_id.substr(block.recording_id.size() - 1);
+  const auto of_which_tests = [](const std::vector<Message>& messages) {
+    std::vector<std::string> tests;
+    for (const Message& message : messages)
+      tests.push_back(asset_of(message) + " " + header_of(message).pst_id + " " +
+                      std::string(name_of(topic_of(message))));
+    return tests;
+  };
+  const std::vector<Message> concluded = in_process(blocks);
+  EXPECT_EQ(concluded.size(), 12U);
+  EXPECT_THAT(of_which_tests(concluded), ::testing::UnorderedElementsAreArray(of_which_tests(over_a_bus(blocks, 4))));
+}
+
 TEST(InProcessPipelineTest, TakesAMessageOnce) {
   std::vector<RawSamples> twice = blocks_of_tests(2, {"A"});
   const std::vector<Message> once = in_process(twice);

@@ -233,6 +233,30 @@ TEST_F(RunnerTest, AnIdThatIsAnotherAssetsHidesNothing) {
   EXPECT_EQ(process->journal().asset_of_input("april/0@A").value(), std::nullopt);
 }
 
+/// Tests of two assets whose ids differ only in what ids of tests have not have one id, and so have their conclusions.
+TEST_F(RunnerTest, AConclusionWhoseIdIsAnotherAssetsIsKeptBesideItAndTakenOnce) {
+  const auto ids_and_assets = [](Process& process) {
+    std::vector<std::pair<std::string, std::string>> found;
+    for (const Message& output : process.outputs()) found.emplace_back(header_of(output).message_id, asset_of(output));
+    return found;
+  };
+  const auto expected = ::testing::ElementsAre(
+      std::pair("test_features/april", "XT_1"), std::pair("state_report/april", "XT_1"),
+      std::pair("test_features/april@XT 1", "XT 1"), std::pair("state_report/april@XT 1", "XT 1"));
+  for (const std::string again : {"", " again"}) {
+    auto process = cutter();
+    for (const std::string asset_id : {"XT_1", "XT 1"}) {
+      for (RawSamples block : blocks_of_tests(1, {asset_id})) {
+        block.recording_id = "april";
+        block.header.message_id += again;
+        send(Message(block));
+      }
+      step(*process, 2);
+    }
+    EXPECT_THAT(ids_and_assets(*process), expected);
+  }
+}
+
 TEST_F(RunnerTest, AForeignSendersMessagesGetIdsAndTheLastOneMayComeAgain) {
   {
     auto process = cutter();
@@ -466,7 +490,7 @@ TEST(Identity, OfAMessageThatGivesNoneIsThatOfBeforeHeadersSaidHowClocksAreKept)
 class FakeLocalInputs final : public LocalInputs {
  public:
   explicit FakeLocalInputs(std::vector<RawSamples> blocks) : blocks_(blocks.begin(), blocks.end()) {}
-  void look(const LayerAtRest&) override { ++looks; }
+  void look(const LayerAtRest&, const LayerAtRest&) override { ++looks; }
   bool has_some() override { return !blocks_.empty(); }
   std::vector<Message> take() override {
     std::vector<Message> piece = {blocks_.front()};
@@ -498,7 +522,7 @@ TEST_F(RunnerTest, TakesLocalInputsOnceAndLooksForThemEverySecond) {
 /// Says that there is something, from a thread of its own, after a while.
 class LateLocalInputs final : public LocalInputs {
  public:
-  void look(const LayerAtRest&) override {}
+  void look(const LayerAtRest&, const LayerAtRest&) override {}
   void on_some(std::function<void()> call) override { call_ = std::move(call); }
   bool has_some() override { return has_some_; }
   std::vector<Message> take() override {

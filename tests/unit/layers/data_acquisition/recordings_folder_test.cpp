@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <fstream>
+#include <functional>
 #include <set>
 #include <thread>
 
@@ -30,10 +31,12 @@ class RecordingsFolderTest : public testing::Test {
   }
   ~RecordingsFolderTest() override { fs::remove_all(directory_); }
 
-  void drop(const std::string& name, const std::string& asset_id, double duration_s = 6.0) {
+  void drop(const std::string& name, const std::string& asset_id, double duration_s = 6.0,
+            std::optional<UtcTime> start_time = {}) {
     Recording recording;
     recording.recording_id = name;
     recording.asset_id = asset_id;
+    recording.start_time = start_time;
     recording.samples = test::SyntheticPst{.rate_Hz = 50.0, .duration_s = duration_s}.record();
     ASSERT_TRUE(write_recording_csv(recording, (directory_ / (name + ".csv")).string()));
   }
@@ -319,7 +322,7 @@ TEST_F(FolderReaderTest, ALargeRecordingHoldsUpNobody) {
   const auto end = Clock::now() + std::chrono::seconds(60);
   while (!fs::exists(directory_ / "done" / "large.csv") && Clock::now() < end) {
     const auto begin = Clock::now();
-    watched.look(at_rest_);
+    watched.look(at_rest_, at_rest_);
     const std::vector<Message> piece = watched.take();
     longest = std::max(longest, Clock::now() - begin);
     EXPECT_LE(piece.size(), 16U);
@@ -336,7 +339,7 @@ TEST_F(FolderReaderTest, ReadsOneRecordingAtATimeAndStopsThoughNobodyTakesIt) {
   FolderReader watched = reader();
   drop("april", "XT03-MV2");
   drop("may", "XT03-MV2");
-  watched.look(at_rest_);
+  watched.look(at_rest_, at_rest_);
   std::set<std::string> taken;
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   while (!watched.has_some() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(kBetweenLooks);
@@ -349,6 +352,66 @@ TEST_F(FolderReaderTest, ReadsOneRecordingAtATimeAndStopsThoughNobodyTakesIt) {
   EXPECT_THAT(files(), testing::IsSupersetOf({"april.csv", "may.csv"})) << "read again at the next start";
 }
 
+/// Ids of tests have '_' for what stands between: of the same content at the same time, two have one id. What is put
+/// away is read no more, also by a service that was killed before it took the blocks.
+TEST_F(FolderReaderTest, OneOfTwoAssetsThatAreAlikeInTheIdsOfTheirTestsPutsTheOthersRecordingNotAway) {
+  assets_.resize(2, assets_.front());
+  assets_[0].asset_id = "XT_1";
+  assets_[1].asset_id = "XT 1";
+  DataAcquisition concluded(assets_), behind(assets_);
+  const LocalInputs::LayerAtRest each = [&](const std::string& asset_id) {
+    return asset_id == "XT_1" ? &concluded : &behind;
+  };
+  FolderReader watched = reader();
+  drop("april", "XT_1", 6.0, UtcTime{1'900'000'000'000'000'000});
+  drop("april too", "XT 1", 6.0, UtcTime{1'900'000'000'000'000'000});
+  const auto look_until = [&](const std::function<bool()>& is_so) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (!is_so() && std::chrono::steady_clock::now() < end) {
+      watched.look(each, each);
+      for (const Message& block : watched.take())
+        if (std::get<RawSamples>(block).asset_id == "XT_1") (void)concluded.receive(block);
+      std::this_thread::sleep_for(kBetweenLooks);
+    }
+    return is_so();
+  };
+  EXPECT_TRUE(look_until([&] { return fs::exists(directory_ / "done" / "april.csv"); }));
+  int looks = 0;
+  EXPECT_TRUE(look_until([&] { return ++looks > 20; }));
+  EXPECT_TRUE(fs::exists(directory_ / "april too.csv"));
+}
+
+/// Killed between two pieces: what is read again goes on, but this was removed meanwhile, and nobody sends the rest.
+TEST_F(FolderReaderTest, OneThatWasTakenInPartAndRemovedEndsItsTest) {
+  Watched before = folder(layer_);
+  drop("april", "XT03-MV2");
+  drop("may", "XT03-MV2");
+  (void)before.look();
+  const std::vector<Message> blocks = before.look();
+  ASSERT_EQ(blocks.size(), 4U);
+  for (const std::size_t first : {0U, 2U}) (void)layer_.receive(blocks[first]);
+  fs::remove(directory_ / "april.csv");
+  FolderReader watched(
+      directory_, assets_, [this](const Error& error) { errors_.push_back(error.describe()); }, kBetweenLooks, 1);
+  std::vector<SampleBlock> ends;
+  const auto is_closed = [&] { return layer_.is_closed(std::get<RawSamples>(blocks[0])); };
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (!is_closed() && std::chrono::steady_clock::now() < end) {
+    watched.look(at_rest_, at_rest_);
+    for (const Message& block : watched.take())
+      for (const Message& output : layer_.receive(block).outputs)
+        if (const auto& made = std::get<SampleBlock>(output); made.boundary == BlockBoundary::end) ends.push_back(made);
+    std::this_thread::sleep_for(kBetweenLooks);
+  }
+  EXPECT_TRUE(watched.stop(std::chrono::seconds(5)));
+  ASSERT_EQ(ends.size(), 2U);
+  EXPECT_EQ(ends[0].recording_id, "may");
+  EXPECT_FALSE(ends[0].aborted) << "it is still there, and taken whole";
+  EXPECT_EQ(ends[1].recording_id, "april");
+  EXPECT_EQ(ends[1].abort_reason, "cut: the recording was removed from the folder before all of it was taken");
+  EXPECT_THAT(errors_, testing::ElementsAre(testing::HasSubstr("april: asset XT03-MV2: was removed before all")));
+}
+
 /// The main loop slept up to a second for each recording of a folder.
 TEST_F(FolderReaderTest, SaysWhenThereIsSomethingToTake) {
   FolderReader watched = reader();
@@ -356,7 +419,7 @@ TEST_F(FolderReaderTest, SaysWhenThereIsSomethingToTake) {
   watched.on_some([&told] { ++told; });
   drop("april", "XT03-MV2");
   drop("may", "XT03-MV2");
-  watched.look(at_rest_);
+  watched.look(at_rest_, at_rest_);
   for (const int expected : {1, 2}) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
     while (told < expected && std::chrono::steady_clock::now() < end)

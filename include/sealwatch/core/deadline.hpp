@@ -24,6 +24,12 @@ class Deadline {
     until_ = (Clock::now() + std::chrono::duration_cast<Clock::duration>(after)).time_since_epoch().count();
   }
 
+  /// Until it; infinite where there is none.
+  [[nodiscard]] double left_s() const {
+    const Clock::duration left(until_.load(std::memory_order_relaxed) - Clock::now().time_since_epoch().count());
+    return std::chrono::duration<double>(left).count();
+  }
+
   /// Whether work must end now; remembered in was_met().
   [[nodiscard]] bool passed() const {
     if (!cancelled() && Clock::now().time_since_epoch().count() < until_.load(std::memory_order_relaxed)) return false;

@@ -46,9 +46,9 @@ Unknown law_unknown(const PlantDescription& plant, const PhysicsParameter& param
   double usual = std::abs(size * parameter.parameter->start.front());
   if (parameter.parameter->own_size || std::abs(setting.value) > size * parameter.parameter->max)
     usual = std::max(usual, std::abs(setting.value));
-  constexpr double kNextToNothing = 1e-4;
+  constexpr double kNextToNothing = 1e-4, kNothing = 1e-8;
   if (parameter.parameter->strength && setting.value != 0.0 && std::abs(setting.value) < kNextToNothing * usual)
-    usual = std::abs(setting.value);
+    usual = std::max(std::abs(setting.value), kNothing * usual);
   return {.name = parameter.name,
           .unit = std::string(parameter.parameter->unit),
           .quantity = quantity,

@@ -53,9 +53,11 @@ Status Analysis::look_for_what_is_missing() {
   std::optional<Trial> from;
   if (own_ && !own_->naming.best.effects.empty()) from = found_in_common(*own_);
   if (own_) tell("looking again, with one value for all tests", 0.5);
-  if (!from && is_far_off(*baseline_)) {
+  if (!from && options.maximum_laws > 0 && is_far_off(*baseline_)) {
     tell("setting out from the recorded states", 0.2);
-    from = start_from_held(*baseline_, prepared(fit_), options);
+    HeldStart held = start_from_held(*baseline_, prepared(fit_), options);
+    from = std::move(held.trial);
+    if (from && held.was_cut) time_.add_not_asked({"further laws with the simulation held to the recorded states"});
   }
   Result<Naming> naming = look_in_common(from.value_or(Trial{{}, baseline_}), options, &*first);
   if (!naming) return fail(naming.error());

@@ -87,7 +87,8 @@ bool same_noise(const PemRecording& a, const PemRecording& b) {
 // Derivatives by what is known beforehand where another fit of the same recordings ended; none where that lacks some,
 // or misses grossly.
 std::vector<KeptDerivatives> derivatives_from(const FittedModel& start, Places places, const PemProblem& problem) {
-  if (excess(start) > kGross) return {};
+  const bool same_run = start.problem.simulation_options.held_within_s == problem.simulation_options.held_within_s;
+  if (excess(start) > kGross || !same_run) return {};
   const std::vector<Unknown>& known = start.problem.shared;
   std::vector<Eigen::Index> columns;
   std::vector<double> slopes;
@@ -167,6 +168,15 @@ FittedModel model_at(const AssetConfig& asset, PemProblem problem, PemOptimum op
   return model;
 }
 
+// The search goes on where it ended nearer to the recordings than its simulations were exact for. Where that fails, as its
+// time is up, what it had stays.
+FittedModel as_exact_as_it_fits(FittedModel model, const Data& data, int threads, int iterations,
+                                const SearchBound& bound) {
+  if (is_exact_enough(model)) return model;
+  Result<FittedModel> exact = continue_fit(model, data, threads, iterations, bound);
+  return exact ? std::move(*exact) : std::move(model);
+}
+
 Result<FittedModel> fit_from(const FittedModel& start, const PemPoint& beside, const AssetConfig& asset,
                              const Data& data, int threads, int iterations, const SearchBound& bound,
                              Places places = {}) {
@@ -179,16 +189,16 @@ Result<FittedModel> fit_from(const FittedModel& start, const PemPoint& beside, c
       search(*problem, std::move(point), options, {.kept = derivatives_from(start, places, *problem), .bound = bound});
   if (!optimum) return fail(optimum.error());
   FittedModel model = model_at(asset, std::move(*problem), std::move(*optimum));
-  if (is_exact_enough(model)) return model;
-  return continue_fit(model, data, threads, iterations, bound);
+  return as_exact_as_it_fits(std::move(model), data, threads, iterations, bound);
 }
 
 }  // namespace
 
 double tolerance_for(const FittedModel& model) {
+  constexpr double kFarOff = 100.0;  // times the noise: nearer, it decides what is told apart
   constexpr double kCoarsest = 1e-4;
   const double finest = SimulationOptions{}.relative_tolerance;
-  return excess(model) <= kGross ? finest : std::clamp(finest * std::sqrt(excess(model)), finest, kCoarsest);
+  return std::clamp(finest * std::sqrt(excess(model)) / kFarOff, finest, kCoarsest);
 }
 
 bool at_bound(const Unknown& unknown, double at) {
@@ -209,7 +219,8 @@ Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const 
   options.cut_into_pieces = data.groups.empty();  // else they are pieces already
   if (!optimum && options.cut_into_pieces) optimum = search_from_asset(*problem, asset, data.samples, options);
   if (!optimum) return fail(optimum.error());
-  return model_at(asset, std::move(*problem), std::move(*optimum));
+  return as_exact_as_it_fits(model_at(asset, std::move(*problem), std::move(*optimum)), data, threads, iterations,
+                             bound);
 }
 
 Result<FittedModel> fit_model_beside(const PemPoint& beside, const AssetConfig& asset, const Data& data,
@@ -238,8 +249,7 @@ Result<FittedModel> continue_fit(const FittedModel& model, const Data& data, int
   Result<PemOptimum> optimum = search(*problem, model.optimum.point, options, std::move(before));
   if (!optimum) return fail(optimum.error());
   FittedModel further = model_at(model.asset, std::move(*problem), std::move(*optimum));
-  if (is_exact_enough(further)) return further;
-  return continue_fit(further, data, threads, iterations, bound);
+  return as_exact_as_it_fits(std::move(further), data, threads, iterations, bound);
 }
 
 const Linearisation& linearised(const FittedModel& model, std::size_t recording, std::optional<Linearisation>& anew) {

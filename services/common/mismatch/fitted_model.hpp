@@ -49,8 +49,8 @@ struct FittedModel {
   std::size_t free_shared = 0;  ///< shared unknowns that are neither known beforehand nor at a bound
 };
 
-/// Relative tolerance of simulations that miss as that model does: they err by the same share of what is missed, near the
-/// noise by a hundredth of that. Steps are then as few as the answer needs.
+/// Relative tolerance of simulations that miss as that model does: beyond a hundred times the noise they err by the same
+/// share of what is missed. Steps are then as few as the answer needs.
 [[nodiscard]] double tolerance_for(const FittedModel& model);
 
 /// Of a search, where nothing else is said.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <string>
 
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/ranking.hpp"
@@ -12,6 +14,7 @@ namespace sealwatch::mismatch {
 namespace {
 
 constexpr double kFarOff = 0.1;        // of the spread of a channel
+constexpr double kNoise = 1.1;         // times the noise's variance: its own size is known to a tenth
 constexpr double kTimeShare = 0.25;    // of the time limit: a start, and no more
 constexpr double kHeldSamples = 10.0;  // within so many distances between samples: noise is averaged, little drifts
 
@@ -26,7 +29,7 @@ double held_within_s(const Data& data) {
 // Sensors and the clock decide which course the simulation is held to.
 bool acts_in_the_plant(const Law& law) { return !is_sensor(law.kind) && law.kind != SiteKind::clock_rate; }
 
-double misfit_of(const Trial& trial) { return trial.model->misfit / trial.model->residuals; }
+double misfit_of(const FittedModel& model) { return model.misfit / model.residuals; }
 
 // Nearly in proportion, the laws that promise most are those that bring most: few refits do.
 // What explains less than half of what is left is asked in free runs.
@@ -38,12 +41,13 @@ bool add_best(Trial& found, const Data& held, const ExplainOptions& options) {
   for (LawStart& start : ranked_laws(*asked, asked->candidates.size(), true))
     if (starts.size() < kRefits && acts_in_the_plant(*start.effect.law)) starts.push_back({std::move(start)});
   const std::vector<Trial> trials = refit(found, starts, held, options.threads);
-  if (trials.empty() || share_explained(misfit_of(found), misfit_of(trials.front())) < kExplainedAtLeast) return false;
+  if (trials.empty() || share_explained(misfit_of(*found.model), misfit_of(*trials.front().model)) < kExplainedAtLeast)
+    return false;
   found = with_derivatives(trials.front(), held, options.threads);
   return true;
 }
 
-// What the simulations are held to, and for how long they are.
+// What the simulations are held to, and until when.
 Data held_data(const Data& data, const Deadline& until) {
   Data held = data;
   held.held_within_s = held_within_s(data);
@@ -55,33 +59,51 @@ Data held_data(const Data& data, const Deadline& until) {
 }  // namespace
 
 bool is_far_off(const FittedModel& model) {
-  if (excess(model) <= kGross) return false;
-  for (Eigen::Index channel = 0; channel < model.problem.recordings.front().noise_std.size(); ++channel) {
-    double missed = 0.0, spread = 0.0;
-    for (std::size_t k = 0; k < model.problem.recordings.size(); ++k) {
-      const auto recorded = model.problem.recordings[k].simulation->recorded().col(channel);
-      missed += (recorded - model.optimum.at_optimum[k].simulated.col(channel)).squaredNorm();
-      spread += (recorded.array() - recorded.mean()).square().sum();
+  struct Sums {
+    double missed = 0.0, spread = 0.0, noise = 0.0;
+  };
+  std::map<std::string, Sums> sums;  // of channels: recordings need not have the same
+  for (std::size_t k = 0; k < model.problem.recordings.size(); ++k) {
+    const PemRecording& recording = model.problem.recordings[k];
+    const RowMatrix& recorded = recording.simulation->recorded();
+    for (Eigen::Index c = 0; c < recorded.cols(); ++c) {
+      if (!std::isfinite(recording.noise_std(c))) continue;
+      Sums& sum = sums[recording.simulation->channels()[static_cast<std::size_t>(c)]];
+      sum.missed += (recorded.col(c) - model.optimum.at_optimum[k].simulated.col(c)).squaredNorm();
+      sum.spread += (recorded.col(c).array() - recorded.col(c).mean()).square().sum();
+      sum.noise += static_cast<double>(recorded.rows()) * std::pow(recording.noise_std(c), 2);
     }
-    if (missed > kFarOff * kFarOff * spread) return true;
   }
-  return false;
+  return std::ranges::any_of(sums, [](const auto& channel) {
+    const Sums& sum = channel.second;
+    return sum.missed > kFarOff * kFarOff * sum.spread && sum.missed > kGross * sum.noise;
+  });
 }
 
-std::optional<Trial> start_from_held(const FittedModel& baseline, const Data& data, const ExplainOptions& options) {
-  if (passed(data.deadline)) return std::nullopt;
+HeldStart start_from_held(const FittedModel& baseline, const Data& data, const ExplainOptions& options) {
+  HeldStart start;
+  const double allowed_s = std::min(kTimeShare * options.time_limit_s,
+                                    data.deadline == nullptr ? options.time_limit_s : data.deadline->left_s());
   Deadline until(options.cancel);
-  until.set_in(kTimeShare * options.time_limit_s);
+  until.set_in(allowed_s);
   const Data held = held_data(data, until);
-  Result<FittedModel> model = fit_model(baseline.asset, held, &baseline, options.threads);
-  if (!model) return std::nullopt;
+  Result<FittedModel> model = fit_model(baseline.asset, held, &baseline, options.threads, 0);
+  if (!model || is_far_off(*model)) return start;  // too little of its state is measured
+  model = continue_fit(*model, held, options.threads, kSearchIterations);
+  if (!model) return start;
   Trial found{{}, std::make_shared<const FittedModel>(std::move(*model))};
-  while (static_cast<int>(found.effects.size()) < options.maximum_laws && add_best(found, held, options)) {
+  while (excess(*found.model) > kNoise && static_cast<int>(found.effects.size()) < options.maximum_laws &&
+         add_best(found, held, options)) {
   }
-  if (found.effects.empty()) return std::nullopt;
+  start.was_cut = until.was_met();
+  if (found.effects.empty()) return start;
   Result<FittedModel> free = fit_model(found.model->asset, data, found.model.get(), options.threads);
-  if (!free || free->misfit >= baseline.misfit) return std::nullopt;
-  return Trial{std::move(found.effects), std::make_shared<const FittedModel>(std::move(*free))};
+  if (!free) return start;
+  if (share_explained(misfit_of(baseline), misfit_of(*free)) >= kExplainedAtLeast)
+    start.trial = Trial{.effects = std::move(found.effects),
+                        .model = std::make_shared<const FittedModel>(std::move(*free)),
+                        .is_start = true};
+  return start;
 }
 
 }  // namespace sealwatch::mismatch

@@ -10,12 +10,17 @@
 
 namespace sealwatch::mismatch {
 
-/// Whether a channel is missed by more than a tenth of its own course.
+/// Whether a channel is missed by more than a tenth of its own course, far beyond its noise.
 [[nodiscard]] bool is_far_off(const FittedModel& model);
 
+struct HeldStart {
+  std::optional<Trial> trial = {};
+  bool was_cut = false;  ///< not all laws were asked
+};
+
 /// The laws that are found with the simulations held, one after the other, refitted to free runs; nothing where there are
-/// none, or where free runs are no better with them. `baseline`: fitted to `data`.
-[[nodiscard]] std::optional<Trial> start_from_held(const FittedModel& baseline, const Data& data,
-                                                   const ExplainOptions& options);
+/// none, where too little of the state is measured, or where free runs leave most of the misfit. `baseline`: fitted to
+/// `data`.
+[[nodiscard]] HeldStart start_from_held(const FittedModel& baseline, const Data& data, const ExplainOptions& options);
 
 }  // namespace sealwatch::mismatch

@@ -446,6 +446,10 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     Result<Screening> last = screen(*naming.best.model, data, screening);
     if (!last) return fail(last.error());
     naming.last = std::move(*last);
+    if (from.is_start && in_time("other laws in place of those found with held states")) {
+      another_law_for_each(naming, data, options);
+      one_law_for_several(naming, data, options);
+    }
   }
   while (static_cast<int>(naming.best.effects.size()) < options.maximum_laws) {
     if (!differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate) ||

@@ -21,6 +21,7 @@ struct Trial {
   std::vector<Effect> effects;
   std::shared_ptr<const FittedModel> model;
   std::string differs_in = {};  ///< a parameter that each recording has for itself here, and not in the search
+  bool is_start = false;        ///< found otherwise: nothing was asked in place of its laws yet
 };
 
 /// A law with start values of all its parameters, and by how much the unknowns of the model that it is added to change

@@ -3,13 +3,15 @@
 // where and when it is lacking, and nearly in proportion.
 //
 //   dy_i/dt = f_i + g_1 (r_i(t) - y_i)     y_i a state that is measured, r_i its record, linear between samples
-//   dy_j/dt = f_j + g_2 (r_i(t) - y_i)     y_j the rate of y_i (f_i = y_j, as speed to position) that is not measured
-//   g_1 = 1 / tau, g_2 = 0; with a rate g_1 = 2 / tau, g_2 = 1 / tau^2: critically damped, both within tau
+//   dy_j/dt = f_j + g_2 (r_i(t) - y_i)     y_j the rate of y_i (f_i = c y_j, as speed to position) that is not measured
+//   g_1 = 1 / tau, g_2 = 0; with a rate g_1 = 2 / tau, g_2 = 1 / (c tau^2): critically damped, both within tau
 //
 // D. G. Luenberger, IEEE Trans. Automatic Control 16 (1971) 596. As a start of a fit: H. D. I. Abarbanel, D. R. Creveling,
 // R. Farsian, M. Kostuk, SIAM J. Applied Dynamical Systems 8 (2009) 1341.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -25,15 +27,17 @@ class MeasuredStates {
     int state = 0;
     std::vector<double> recorded;  ///< at the samples
     int rate = -1;                 ///< the state that is its rate and not measured; -1: none
+    double slope = 1.0;            ///< f_i / y_j: of a gear, or of another unit
   };
 
   /// `time_constant_s`: tau.
   MeasuredStates(std::vector<double> times, std::vector<State> states, double time_constant_s)
       : times_(std::move(times)), states_(std::move(states)), tau_s_(time_constant_s) {}
 
-  /// Asks the equations, at any state, which states are the rates of measured ones.
+  /// Asks the equations which states are the rates of measured ones: of these alone, in proportion, both at a state and
+  /// where every state is larger by its `size`. (Of a gear whose ratio is free, sensitivities lack what that does to g_2.)
   template <int N>
-  void find_rates(const OdeSystem<N>& system, const std::vector<double>& at);
+  void find_rates(const OdeSystem<N>& system, const std::vector<double>& at, const std::vector<double>& size);
 
   /// f += g (r - y)
   void add_to(double t, const double* y, double* f) const {
@@ -42,20 +46,20 @@ class MeasuredStates {
       const double r = one.recorded[sample_] + share_ * (one.recorded[sample_ + 1] - one.recorded[sample_]),
                    difference = r - y[one.state];
       f[one.state] += gain(one) * difference;
-      if (one.rate >= 0) f[one.rate] += gain_of_rate() * difference;
+      if (one.rate >= 0) f[one.rate] += gain_of_rate(one) * difference;
     }
   }
   template <class Matrix>
   void add_to(Matrix& jacobian) const {
     for (const State& one : states_) {
       jacobian[one.state][one.state] -= gain(one);
-      if (one.rate >= 0) jacobian[one.rate][one.state] -= gain_of_rate();
+      if (one.rate >= 0) jacobian[one.rate][one.state] -= gain_of_rate(one);
     }
   }
 
  private:
   [[nodiscard]] double gain(const State& one) const { return (one.rate >= 0 ? 2.0 : 1.0) / tau_s_; }
-  [[nodiscard]] double gain_of_rate() const { return 1.0 / (tau_s_ * tau_s_); }
+  [[nodiscard]] double gain_of_rate(const State& one) const { return 1.0 / (tau_s_ * tau_s_ * one.slope); }
   void locate(double t) const {
     while (sample_ + 2 < times_.size() && times_[sample_ + 1] <= t) ++sample_;
     while (sample_ > 0 && times_[sample_] > t) --sample_;
@@ -70,25 +74,35 @@ class MeasuredStates {
 };
 
 template <int N>
-void MeasuredStates::find_rates(const OdeSystem<N>& system, const std::vector<double>& at) {
+void MeasuredStates::find_rates(const OdeSystem<N>& system, const std::vector<double>& at,
+                                const std::vector<double>& size) {
   const int count = state_count(system);
   auto f = SquareSystem<N>::vector(count);
   auto jacobian = SquareSystem<N>::matrix(count);
-  system.linearise(times_.front(), at.data(), f.data(), jacobian);
-  const auto is_measured = [&](int state) {
-    for (const State& one : states_)
-      if (one.state == state) return true;
-    return false;
-  };
-  for (State& one : states_) {
-    int rate = -1, others = 0;
+  constexpr double kAlmost = 1e-6;  // of derivatives that are differences
+  // The only state on which f of a state depends, in proportion; -1: there is none.
+  const auto only_rate = [&](State& one, const std::vector<double>& y) {
+    int rate = -1;
     for (int k = 0; k < count; ++k) {
-      if (jacobian[one.state][k] == 1.0 && f[one.state] == at[static_cast<std::size_t>(k)])
-        rate = k;
-      else if (jacobian[one.state][k] != 0.0)
-        ++others;
+      const double slope = jacobian[one.state][k], share = slope * y[static_cast<std::size_t>(k)];
+      if (slope == 0.0) continue;
+      if (rate >= 0 || std::abs(f[one.state] - share) > kAlmost * std::abs(share)) return -1;
+      rate = k;
+      one.slope = slope;
     }
-    if (rate >= 0 && others == 0 && !is_measured(rate)) one.rate = rate;
+    return rate;
+  };
+  const auto is_measured = [&](int state) { return std::ranges::find(states_, state, &State::state) != states_.end(); };
+  std::vector<double> larger = at;
+  for (std::size_t k = 0; k < larger.size(); ++k) larger[k] += size[k];
+  system.linearise(times_.front(), at.data(), f.data(), jacobian);
+  for (State& one : states_) one.rate = only_rate(one, at);
+  system.linearise(times_.front(), larger.data(), f.data(), jacobian);
+  for (State& one : states_) {
+    const double slope = one.slope;
+    const bool same =
+        one.rate >= 0 && only_rate(one, larger) == one.rate && std::abs(one.slope - slope) <= kAlmost * std::abs(slope);
+    if (!same || is_measured(one.rate)) one.rate = -1;
   }
 }
 
@@ -98,10 +112,11 @@ class HeldToRecording final : public OdeSystem<N> {
  public:
   using typename OdeSystem<N>::Matrix;
 
-  /// `at`: any state at which the equations have a value.
-  HeldToRecording(const OdeSystem<N>& system, MeasuredStates measured, const std::vector<double>& at)
+  /// `at`: any state at which the equations have a value; `size`: of each state, usually.
+  HeldToRecording(const OdeSystem<N>& system, MeasuredStates measured, const std::vector<double>& at,
+                  const std::vector<double>& size)
       : system_(system), measured_(std::move(measured)) {
-    measured_.find_rates(system, at);
+    measured_.find_rates(system, at, size);
   }
 
   [[nodiscard]] int states() const override { return state_count(system_); }

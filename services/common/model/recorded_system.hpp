@@ -70,7 +70,8 @@ class SizedSystem : public RecordedSystem, public OdeSystem<N> {
     return std::make_unique<Bdf<N>>(integrated, parameters, std::move(scale), options);
   }
   void hold_to(MeasuredStates measured, const std::vector<double>& at) final {
-    held_ = std::make_unique<HeldToRecording<N>>(*this, std::move(measured), at);
+    std::vector<double> size = scale(1.0);
+    held_ = std::make_unique<HeldToRecording<N>>(*this, std::move(measured), at, size);
   }
   [[nodiscard]] bool settle(double time, const std::vector<bool>& fast, const std::vector<double>& scale,
                             std::vector<double>& state, double* point, std::size_t stride) const final {

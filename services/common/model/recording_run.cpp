@@ -27,15 +27,19 @@ constexpr std::size_t kManyJumps = 100;
 
 // The system, held to the recorded course of its measured states where that is wanted.
 RecordedSystem& held(const RecordedSimulation& simulation, const RecordedInput& input, RecordedSystem& system,
-                     const ModelValues& values, const SimulationOptions& options) {
+                     const SimulationOptions& options) {
   if (!(options.held_within_s > 0.0)) return system;
+  const ModelValues& start = simulation.start();
   std::vector<MeasuredStates::State> states;
   for (std::size_t k = 0; k < simulation.simulated_channels().size(); ++k) {
     const int state = simulation.simulated_channels()[k].state;
-    const auto recorded = simulation.recorded().col(static_cast<Eigen::Index>(k));
+    const Eigen::ArrayXd recorded =
+        (simulation.recorded().col(static_cast<Eigen::Index>(k)).array() - start.sensor_offset[k]) /
+        (1.0 + start.sensor_gain[k]);
     if (state >= 0) states.push_back({.state = state, .recorded = {recorded.begin(), recorded.end()}});
   }
-  system.hold_to({input.times(), std::move(states), options.held_within_s}, values.initial_state);
+  if (states.empty()) return system;
+  system.hold_to({input.times(), std::move(states), options.held_within_s}, start.initial_state);
   return system;
 }
 
@@ -48,7 +52,7 @@ class RecordingRun {
         input_(input),
         free_(free),
         columns_(1 + free.size() + (injected == nullptr ? 0 : injected->columns())),
-        system_(held(simulation, input, system, values, options)),
+        system_(held(simulation, input, system, options)),
         scale_(system_.scale(options.relative_tolerance)),
         deadline_(options.deadline),
         most_steps_(options.maximum_steps + kStepsOfARestart * (std::max<std::size_t>(input.segment_count(), 1) - 1)),
@@ -139,7 +143,8 @@ class RecordingRun {
     std::vector<double> state = values.initial_state;
     state.resize(static_cast<std::size_t>(integrator_.states()), 0.0);
     if (!system_.start(free_, state.data(), point_.data(), stride)) return false;
-    if (!system_.settle(input_.times().front(), fast, scale_, state, point_.data(), stride)) return false;
+    const std::vector<double> finest = system_.scale(SimulationOptions{}.relative_tolerance);  // or none is found
+    if (!system_.settle(input_.times().front(), fast, finest, state, point_.data(), stride)) return false;
     for (int k = 0; k < integrator_.states(); ++k) point_[k * stride] = state[k];
     return true;
   }

@@ -127,8 +127,7 @@ void Analysis::compare_fitted(std::size_t recording) {
     add_gain(result_.recordings.back(), block_gains(before, after, place), *best_.model, options_.seed);
   };
   if (!windowed()) return add(*baseline_, *best_.model, fit_, recording);
-  const auto before = free_run(*baseline_, fit_, recording),
-             after = free_run(*best_.model, fit_, recording);
+  const auto before = free_run(*baseline_, fit_, recording), after = free_run(*best_.model, fit_, recording);
   if (before && after) return add(*before, *after, only(fit_, recording), 0);
   const std::string why = reason_in_words(before ? after.error() : before.error());
   note_not_compared({.gain = {}, .not_compared = {fit_.names[recording] + " as a whole (" + why + ")"}});

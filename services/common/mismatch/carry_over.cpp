@@ -1,7 +1,6 @@
 #include "services/common/mismatch/carry_over.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "services/common/mismatch/effects.hpp"
@@ -10,10 +9,12 @@
 namespace sealwatch::mismatch {
 
 bool Worth::carries_over() const {
-  return whole.low > 0.0 && std::ranges::all_of(of_law, [](double gain) { return gain > 0.0; });
+  return whole.low > 0.0 && std::ranges::all_of(of_law, [](const GainInterval& gain) { return gain.low > 0.0; });
 }
 
-std::size_t Worth::least() const { return static_cast<std::size_t>(std::ranges::min_element(of_law) - of_law.begin()); }
+std::size_t Worth::least() const {
+  return static_cast<std::size_t>(std::ranges::min_element(of_law, {}, &GainInterval::low) - of_law.begin());
+}
 
 CarryOver::CarryOver(const HeldOut& held_out, Trial nothing, Without without)
     : held_out_(held_out), nothing_(std::move(nothing)), without_(std::move(without)) {}
@@ -32,7 +33,9 @@ Worth CarryOver::of(const Trial& trial) const {
   Worth worth = of_whole(trial);
   for (std::size_t k = 0; k < trial.effects.size() && worth.compared; ++k) {
     const auto own = held_out_.gains(without_(trial, k), trial);
-    worth.of_law.push_back(own ? std::accumulate(own->gain.begin(), own->gain.end(), 0.0) : 0.0);
+    worth.of_law.push_back(own && !own->gain.empty()
+                               ? gain_interval(*own, dispersion(*trial.model), held_out_.options.seed)
+                               : GainInterval{});
   }
   return worth;
 }

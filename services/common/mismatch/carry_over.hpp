@@ -1,8 +1,8 @@
 // Which explanation of a gross misfit carries over to recordings that took no part.
 //
 // In a gross misfit the models' own errors, not noise, decide which laws fit best, and what fits best may bend to them.
-// There an explanation counts that predicts recordings beyond doubt better than the model without laws does, and each
-// of whose laws helps in that.
+// There an explanation counts that predicts recordings beyond doubt better than the model without laws does, and than
+// itself without any of its laws.
 #pragma once
 
 #include <functional>
@@ -18,9 +18,9 @@ namespace sealwatch::mismatch {
 
 /// Of an explanation, to recordings that took no part: gains of likelihood.
 struct Worth {
-  bool compared = false;       ///< there are recordings that took no part, and both models can be simulated on some
-  GainInterval whole;          ///< against the model without laws
-  std::vector<double> of_law;  ///< against the explanation without this law; empty where nothing was compared
+  bool compared = false;  ///< there are recordings that took no part, and both models can be simulated on some
+  GainInterval whole;     ///< against the model without laws
+  std::vector<GainInterval> of_law;  ///< against the explanation without this law; empty where nothing was compared
   std::vector<std::string> not_compared;
 
   [[nodiscard]] bool carries_over() const;

@@ -24,6 +24,10 @@ std::span<const Topic> AdvisoryGeneration::inputs() const { return kInputs; }
 std::span<const Topic> AdvisoryGeneration::outputs() const { return kOutputs; }
 
 void AdvisoryGeneration::restore(const Message& own_output) {
+  if (const auto* record = std::get_if<ActRecord>(&own_output))
+    for (const MaintenanceEvent& event : record->events)
+      if (event.tests_known && assets_[event.asset_id].retracted.name(event.header.message_id, event.test_ids))
+        judge_anew(assets_[event.asset_id]);
   const auto* advisory = std::get_if<Advisory>(&own_output);
   if (!advisory) return;
   Asset& asset = assets_[advisory->asset_id];

@@ -75,7 +75,7 @@ void AdvisoryGeneration::remember_words(const Advisory& advisory, Asset& asset) 
 
 Conclusion AdvisoryGeneration::retracted(const MaintenanceEvent& event) {
   Conclusion conclusion{.outputs = {}, .consumed = {event.header.message_id}};
-  const auto retraction = retraction_of(event.asset_id, event.header.message_id);
+  const auto retraction = retraction_of(event);
   if (!retraction) return conclusion;
   Asset& asset = assets_[event.asset_id];
   if (learn(*retraction, asset) && asset.current)
@@ -129,7 +129,7 @@ void AdvisoryGeneration::renew(const std::string& retraction_id, Asset& asset, C
   Evidence evidence{*answers.life, *answers.health, *answers.state, last, TestWords()};
   for (const Header* answer : {&evidence.life.header, &evidence.health.header, &evidence.state.header})
     conclusion.consumed.push_back(answer->message_id);
-  const bool was_known = !learn(*retraction_of(evidence.life.asset_id, retraction_id), asset);
+  const bool was_known = !learn(*retraction_answered_by(evidence.state), asset);
   const Header& answered = evidence.life.header;
   // A later test was judged meanwhile: its advice is newer than these answers.
   if (was_known && answered.event_time_known && asset.last_test && UtcTime{answered.event_time_ns} < *asset.last_test)

@@ -117,6 +117,13 @@ std::string content(const ModelDiscrepancy& m) {
   return text;
 }
 std::string content(const ModelAcceptance& m) { return acceptance_words(m); }
+std::string content(const ActRecord& m) {
+  std::string text = "kept by " + m.header.producer + ": ";
+  if (!m.events.empty()) text += content(m.events.front());
+  if (!m.acceptances.empty()) text += content(m.acceptances.front());
+  if (!m.acknowledgements.empty()) text += content(m.acknowledgements.front());
+  return text;
+}
 
 std::string samples_words(const Header& header) {
   return is_expired(header.producer) ? " [its samples are kept no more]" : "";

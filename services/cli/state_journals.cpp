@@ -103,6 +103,7 @@ std::string writer_of(Topic topic) {
     case Topic::acknowledgement:
     case Topic::maintenance_event:
     case Topic::model_acceptance:
+    case Topic::act_record:  // of several, as each keeps its own
       break;
   }
   return {};

@@ -28,7 +28,7 @@ struct Selection {
   bool service_status = false;
 };
 
-/// All topics but the bulky samples, unless some are named.
+/// All topics but the bulky samples, and what services keep for each other, unless some are named.
 std::optional<Selection> select(const std::vector<std::string>& names) {
   Selection selection;
   std::vector<std::string> known(EnumNames<Topic>::kNames.begin(), EnumNames<Topic>::kNames.end());
@@ -43,8 +43,8 @@ std::optional<Selection> select(const std::vector<std::string>& names) {
   }
   if (names.empty())
     for (std::size_t index = 0; index < EnumNames<Topic>::kNames.size(); ++index)
-      if (const auto topic = static_cast<Topic>(index);
-          topic != Topic::raw_samples && topic != Topic::sample_block && topic != Topic::test_window)
+      if (const auto topic = static_cast<Topic>(index); topic != Topic::raw_samples && topic != Topic::sample_block &&
+                                                        topic != Topic::test_window && topic != Topic::act_record)
         selection.topics.push_back(topic);
   return selection;
 }

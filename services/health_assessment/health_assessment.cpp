@@ -45,11 +45,6 @@ void take_grade(std::optional<double> grade, HealthReport& report) {
   report.health_grade = grade.value_or(0.0);
 }
 
-std::optional<Retraction> answered_retraction(const std::string& asset_id, const Header& header) {
-  const auto id = retraction_answered(header);
-  return id ? retraction_of(asset_id, *id) : std::nullopt;
-}
-
 void add_trend(const std::vector<GradeAt>& grades, HealthReport& report) {
   const auto trend = trend_of(grades);
   report.trend_known = trend.has_value();
@@ -90,7 +85,7 @@ void HealthAssessment::restore(const Message& own_output) {
   if (const auto* found = std::get_if<ModelDiscrepancy>(&own_output)) state.discrepancies.restore(*found);
   const auto* report = std::get_if<HealthReport>(&own_output);
   if (!report) return;
-  if (const auto retraction = answered_retraction(report->asset_id, report->header)) {
+  if (const auto retraction = retraction_answered_by(*report)) {
     state.past.apply(*retraction);
     Conclusion released;  // what it frees is consumed already
     state.discrepancies.forget([&](const std::string& pst_id) { return !state.past.counts(pst_id); }, released);
@@ -150,7 +145,7 @@ std::optional<std::string> HealthAssessment::next_report(const AssetState& state
 /// One whose health is concluded already comes again after a restart because its test was kept.
 void HealthAssessment::take_report(AssetState& state, const StateReport& report, Conclusion& conclusion) const {
   const std::optional<bool> admissible = state.discrepancies.concluded(report.header.pst_id);
-  if (answered_retraction(report.asset_id, report.header))
+  if (retraction_answered_by(report))
     state.reports.add(report, conclusion);
   else if (report.header.pst_id.empty())
     conclusion.consumed.push_back(report.header.message_id);
@@ -209,7 +204,7 @@ HealthReport HealthAssessment::conclude(AssetState& state, const StateReport& st
 }
 
 void HealthAssessment::retract(AssetState& state, const StateReport& answer, Conclusion& conclusion) {
-  const auto retraction = answered_retraction(answer.asset_id, answer.header);
+  const auto retraction = retraction_answered_by(answer);
   conclusion.consumed.push_back(answer.header.message_id);
   state.past.apply(*retraction);
   state.discrepancies.forget([&](const std::string& pst_id) { return !state.past.counts(pst_id); }, conclusion);
@@ -219,6 +214,7 @@ void HealthAssessment::retract(AssetState& state, const StateReport& answer, Con
   report.header = answer.header;
   report.header.message_id = "health_report/" + retraction->id;
   report.header.producer = kProducer;
+  name_tests(retraction->tests, report);
   report.header.source_ids = {retraction->id, answer.header.message_id};
   if (last) report.header.source_ids.push_back(last->header.message_id);
   add_trend(state.past.grades(), report);

@@ -42,6 +42,10 @@ class AssetHistory {
   void add_replacement(const Replacement& replacement);
   /// From now on the tests that it means do not count, or count again, or the replacement that it means was none.
   void apply(const Retraction& retraction);
+  /// The tests that a retraction of many means, by the record of it.
+  void name_tests(const std::string& retraction_id, const std::vector<std::string>& tests) {
+    (void)retracted_.name(retraction_id, tests);
+  }
   /// Whether nobody took the replacement of this message id back.
   [[nodiscard]] bool holds(const std::string& replacement_id) const { return retracted_.holds(replacement_id); }
 

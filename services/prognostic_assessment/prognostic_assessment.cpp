@@ -86,6 +86,9 @@ void PrognosticAssessment::restore(const Message& own_output) {
     history_[life->asset_id].add_replacement(replacement_of(*life));
     learn_replacements(life->asset_id, life->header);
   }
+  if (const auto* record = std::get_if<ActRecord>(&own_output))
+    for (const MaintenanceEvent& event : record->events)
+      if (event.tests_known) history_[event.asset_id].name_tests(event.header.message_id, event.test_ids);
 }
 
 void PrognosticAssessment::remember(const LeakageEstimate& estimate) {

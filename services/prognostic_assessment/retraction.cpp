@@ -39,7 +39,7 @@ void PrognosticAssessment::apply(const std::string& asset_id, const Retraction& 
 
 Conclusion PrognosticAssessment::retracted(const MaintenanceEvent& event) {
   Conclusion conclusion{.outputs = {}, .consumed = {event.header.message_id}};
-  const auto retraction = retraction_of(event.asset_id, event.header.message_id);
+  const auto retraction = retraction_of(event);
   if (!retraction) return conclusion;
   apply(event.asset_id, *retraction);
   const AssetConfig* asset = configuration_.find_asset(event.asset_id);

@@ -38,8 +38,8 @@ bool is_first_after_replacement(const StateReport& report) {
 
 /// What the report answers, if it answers a retraction: an id of the event comes first among its sources.
 std::optional<Retraction> answered_retraction(const StateReport& report) {
-  if (!report.header.pst_id.empty() || report.header.source_ids.empty()) return std::nullopt;
-  return retraction_of(report.asset_id, report.header.source_ids.front());
+  if (report.header.source_ids.empty() || !is_retraction_id(report.header.source_ids.front())) return std::nullopt;
+  return retraction_answered_by(report);
 }
 
 /// Whether the maintenance was done before this test; unknown times count as before.
@@ -140,7 +140,7 @@ std::optional<StateReport> StateDetection::judge_anew(const std::string& asset_i
 /// The answer is a report of no test: on the last test that counts, as it is judged now.
 Conclusion StateDetection::retracted(const MaintenanceEvent& event, AssetState& state) {
   Conclusion conclusion{.outputs = {}, .consumed = {event.header.message_id}};
-  const auto retraction = retraction_of(event.asset_id, event.header.message_id);
+  const auto retraction = retraction_of(event);
   if (!retraction) return conclusion;
   state.past.apply(*retraction);
   if (std::erase_if(state.events, [&](const auto& one) { return one.header.message_id == retraction->withdrawn_id; }))
@@ -152,6 +152,7 @@ Conclusion StateDetection::retracted(const MaintenanceEvent& event, AssetState& 
   report.header = event.header;
   report.header.message_id = "state_report/" + event.header.message_id;
   report.header.producer = kProducer;
+  name_tests(retraction->tests, report);
   report.header.source_ids = {event.header.message_id};
   if (!judged.message_id.empty()) report.header.source_ids.push_back(judged.message_id);
   if (judged.event_time_known) report.header.event_time_ns = judged.event_time_ns;

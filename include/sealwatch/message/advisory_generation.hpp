@@ -89,7 +89,9 @@ struct MaintenanceEvent {
   std::string kind;      ///< "actuator_replaced" | "seal_replaced"
   std::string reported_by;
   std::string remark;
-  SEALWATCH_FIELDS(MaintenanceEvent, asset_id, header, kind, reported_by, remark)
+  bool tests_known = false;           ///< of "tests_retracted": the tests that it means are named, by who took it first
+  std::vector<std::string> test_ids;  ///< PST ids
+  SEALWATCH_FIELDS(MaintenanceEvent, asset_id, header, kind, reported_by, remark, tests_known, test_ids)
   friend bool operator==(const MaintenanceEvent&, const MaintenanceEvent&) = default;
 };
 

@@ -32,9 +32,11 @@ struct HealthReport {
   bool admissible_for_prognosis = true;
   std::vector<std::string> inadmissible_reasons;  ///< "cut after 7.4 s of about 31 s", empty when admissible
   bool health_grade_known = false;                ///< false until a test has measured the seal
+  bool retracted_tests_known = false;             ///< as in the state_report that it answers
+  std::vector<std::string> retracted_test_ids;
   SEALWATCH_FIELDS(HealthReport, asset_id, header, health_grade, trend_known, health_trend_per_year,
                    health_trend_std_per_year, no_fault_likelihood, ambiguity_group, admissible_for_prognosis,
-                   inadmissible_reasons, health_grade_known)
+                   inadmissible_reasons, health_grade_known, retracted_tests_known, retracted_test_ids)
   friend bool operator==(const HealthReport&, const HealthReport&) = default;
 };
 

@@ -8,6 +8,8 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "sealwatch/message/retraction.hpp"
 
@@ -31,9 +33,28 @@ class RetractedTests {
       return;
     }
     if (withdrawn_.contains(retraction.id)) return;
-    release(retraction.id);
-    std::set<std::string>& meant = meant_[retraction.id] = meant_by(retraction);
-    for (const std::string& pst_id : meant) ++retractions_of_[pst_id];
+    mean(retraction.id, meant_by(retraction));
+  }
+
+  /// The tests that a retraction of many means, by the record of it, which may be told before or after the act. Whether
+  /// others count now.
+  bool name(const std::string& retraction_id, const std::vector<std::string>& tests) {
+    const auto& named = named_[retraction_id] = {tests.begin(), tests.end()};
+    const auto meant = meant_.find(retraction_id);
+    if (meant == meant_.end() || meant->second == named) return false;
+    mean(retraction_id, named);
+    return true;
+  }
+
+  /// By the record of it, else by what is known.
+  [[nodiscard]] std::set<std::string> meant_by(const Retraction& retraction) const {
+    if (!retraction.since) return {retraction.pst_id};
+    if (retraction.tests) return {retraction.tests->begin(), retraction.tests->end()};
+    if (const auto named = named_.find(retraction.id); named != named_.end()) return named->second;
+    std::set<std::string> meant;
+    for (const auto& [pst_id, time] : tests_)
+      if (time && *time >= *retraction.since) meant.insert(pst_id);
+    return meant;
   }
 
   /// Whether it means nothing that is known: no test that counts, no retraction in force, no replacement of
@@ -61,12 +82,10 @@ class RetractedTests {
   }
 
  private:
-  [[nodiscard]] std::set<std::string> meant_by(const Retraction& retraction) const {
-    if (!retraction.since) return {retraction.pst_id};
-    std::set<std::string> meant;
-    for (const auto& [pst_id, time] : tests_)
-      if (time && *time >= *retraction.since) meant.insert(pst_id);
-    return meant;
+  void mean(const std::string& retraction_id, std::set<std::string> tests) {
+    release(retraction_id);
+    for (const std::string& pst_id : tests) ++retractions_of_[pst_id];
+    meant_[retraction_id] = std::move(tests);
   }
 
   void release(const std::string& retraction_id) {
@@ -78,6 +97,7 @@ class RetractedTests {
   }
 
   std::map<std::string, std::optional<UtcTime>> tests_;
+  std::map<std::string, std::set<std::string>> named_;  ///< by the id of a retraction of many, as recorded
   std::map<std::string, std::set<std::string>> meant_;  ///< by the id of the retraction in force
   std::map<std::string, std::size_t> retractions_of_;   ///< how many of them mean it, by test
   std::set<std::string> withdrawn_;                     ///< ids of what was taken back

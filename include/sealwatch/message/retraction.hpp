@@ -3,7 +3,8 @@
 // who and why; its message_id says what is meant, so that layers find it again in what they concluded from it:
 //
 //   test_retracted         retraction/<asset>/test/<pst_id>/<when>
-//   tests_retracted        retraction/<asset>/since/<time>/<when>     all that is known when it comes, from that time on
+//   tests_retracted        retraction/<asset>/since/<time>/<when>     all that is known when it comes, from that time on:
+//                                                                     who takes it names them in it, and in the record
 //   retraction_withdrawn   retraction/<asset>/withdrawn/<when>/<id of the retraction, or of a replacement that was none>
 //
 // Nothing is deleted: what is retracted stays in the record, and counts again when the retraction is withdrawn. Where a
@@ -31,6 +32,8 @@ struct Retraction {
   std::string pst_id = {};            ///< the test; "" none
   std::optional<UtcTime> since = {};  ///< all tests from then on
   std::string withdrawn_id = {};      ///< the retraction or replacement that no longer holds; "" none
+  /// Those that "since" means, where it is recorded; else those that are known.
+  std::optional<std::vector<std::string>> tests = {};
 };
 
 [[nodiscard]] inline bool is_retraction_kind(std::string_view kind) {
@@ -108,6 +111,29 @@ struct Retraction {
     if (const auto time = parse_utc(what)) retraction.since = *time;
   if (retraction.pst_id.empty() && !retraction.since) return std::nullopt;
   return retraction;
+}
+
+/// What the event retracts or withdraws, with the tests that it names.
+[[nodiscard]] inline std::optional<Retraction> retraction_of(const MaintenanceEvent& event) {
+  auto retraction = retraction_of(event.asset_id, event.header.message_id);
+  if (retraction && event.tests_known) retraction->tests = event.test_ids;
+  return retraction;
+}
+
+/// What a report of state detection or health assessment answers.
+template <class Report>
+[[nodiscard]] std::optional<Retraction> retraction_answered_by(const Report& report) {
+  const auto id = retraction_answered(report.header);
+  auto retraction = id ? retraction_of(report.asset_id, *id) : std::nullopt;
+  if (retraction && report.retracted_tests_known) retraction->tests = report.retracted_test_ids;
+  return retraction;
+}
+
+/// Says in the answer which tests the retraction means.
+template <class Report>
+void name_tests(const std::optional<std::vector<std::string>>& tests, Report& answer) {
+  answer.retracted_tests_known = tests.has_value();
+  answer.retracted_test_ids = tests.value_or(std::vector<std::string>());
 }
 
 /// What an event of each kind has in its id behind the asset's.

@@ -50,9 +50,11 @@ struct StateReport {
   bool pst_overdue = false;   ///< at the event time of this report a test was overdue, or this test came late
   double overdue_days = 0.0;  ///< by how much
   std::vector<std::string> stale_channels;
-  std::string accepted_discrepancy;  ///< model_discrepancy whose model was judged besides; "" none
+  std::string accepted_discrepancy;    ///< model_discrepancy whose model was judged besides; "" none
+  bool retracted_tests_known = false;  ///< in an answer to "all since a date": the tests that it means are named
+  std::vector<std::string> retracted_test_ids;
   SEALWATCH_FIELDS(StateReport, asset_id, header, verdict, verdict_reasons, region, judgements, residuals, pst_overdue,
-                   overdue_days, stale_channels, accepted_discrepancy)
+                   overdue_days, stale_channels, accepted_discrepancy, retracted_tests_known, retracted_test_ids)
   friend bool operator==(const StateReport&, const StateReport&) = default;
 };
 

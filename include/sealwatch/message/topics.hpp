@@ -5,6 +5,7 @@
 #include <string_view>
 #include <variant>
 
+#include "sealwatch/message/act_record.hpp"
 #include "sealwatch/message/advisory_generation.hpp"
 #include "sealwatch/message/data_acquisition.hpp"
 #include "sealwatch/message/data_manipulation.hpp"
@@ -17,10 +18,10 @@ namespace sealwatch {
 
 using MessageAlternatives = std::variant<RawSamples, SampleBlock, TestWindow, TestFeatures, StateReport, HealthReport,
                                          LeakageEstimate, RemainingLife, PstRequest, Advisory, Acknowledgement,
-                                         MaintenanceEvent, ModelDiscrepancy, ModelAcceptance>;
+                                         MaintenanceEvent, ModelDiscrepancy, ModelAcceptance, ActRecord>;
 
 /// A message of one of the topics that carry assets' data (the service topics are the runtime's own affair). A variant
-/// with a name of its own, so that copying, moving and destroying fourteen topics is compiled once and not in each of
+/// with a name of its own, so that copying, moving and destroying fifteen topics is compiled once and not in each of
 /// the 150 files that hold one: two seconds a file.
 struct Message : MessageAlternatives {
   using MessageAlternatives::MessageAlternatives;
@@ -36,7 +37,7 @@ struct Message : MessageAlternatives {
 /// name.
 SEALWATCH_ENUM(Topic, raw_samples, sample_block, test_window, test_features, state_report, health_report,
                leakage_estimate, remaining_life, pst_request, advisory, acknowledgement, maintenance_event,
-               model_discrepancy, model_acceptance)
+               model_discrepancy, model_acceptance, act_record)
 
 [[nodiscard]] inline Topic topic_of(const Message& message) { return static_cast<Topic>(message.index()); }
 [[nodiscard]] const Header& header_of(const Message& message);

@@ -9,13 +9,15 @@
 namespace sealwatch {
 namespace {
 
-/// The content of a message that gives no id, as it was written before headers had the last four fields: what came
-/// before an update and comes again after it has the same id.
+/// The content of a message that gives no id, as it was written before headers had the last four fields, and events
+/// their tests: what came before an update and comes again after it has the same id.
 std::string content_of(const Message& message) {
   std::string content = to_json(without_stamps(message), JsonForm::exact);
   constexpr std::string_view kLater =
       R"(,"writer_started_ns":0,"clock_quality":"unknown","clock_error_known":false,"clock_error_s":0.0)";
-  if (const std::size_t at = content.find(kLater); at != std::string::npos) content.erase(at, kLater.size());
+  constexpr std::string_view kNoTests = R"(,"tests_known":false,"test_ids":[])";
+  for (const std::string_view later : {kLater, kNoTests})
+    if (const std::size_t at = content.find(later); at != std::string::npos) content.erase(at, later.size());
   return content;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "dds/ddsi/ddsi_cdrstream.h"
+#include "idl/act_record.h"
 #include "idl/advisory_generation.h"
 #include "idl/data_acquisition.h"
 #include "idl/data_manipulation.h"
@@ -46,6 +47,7 @@ SEALWATCH_GENERATED(Acknowledgement)
 SEALWATCH_GENERATED(MaintenanceEvent)
 SEALWATCH_GENERATED(ModelDiscrepancy)
 SEALWATCH_GENERATED(ModelAcceptance)
+SEALWATCH_GENERATED(ActRecord)
 SEALWATCH_GENERATED(ServiceStatus)
 SEALWATCH_GENERATED(ResendRequest)
 #undef SEALWATCH_GENERATED

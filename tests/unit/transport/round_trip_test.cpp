@@ -68,7 +68,7 @@ class RoundTrip : public testing::Test {
 
 using AllTypes = testing::Types<RawSamples, SampleBlock, TestWindow, TestFeatures, StateReport, HealthReport,
                                 LeakageEstimate, RemainingLife, PstRequest, Advisory, Acknowledgement, MaintenanceEvent,
-                                ModelDiscrepancy, ModelAcceptance, ServiceStatus, ResendRequest>;
+                                ModelDiscrepancy, ModelAcceptance, ActRecord, ServiceStatus, ResendRequest>;
 TYPED_TEST_SUITE(RoundTrip, AllTypes);
 
 TYPED_TEST(RoundTrip, KeepsEveryFieldOfSequencesThatGrowAndShrink) {

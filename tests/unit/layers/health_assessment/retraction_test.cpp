@@ -49,7 +49,8 @@ class Chain {
     return take(made.features);
   }
   HealthReport retract(const std::string& pst_id, int month) { return say(kTestRetracted, pst_id, month); }
-  HealthReport say(std::string_view kind, const std::string& what, int month) {
+  HealthReport say(std::string_view kind, const std::string& what, int month,
+                   const std::vector<std::string>& tests = {}) {
     MaintenanceEvent event;
     event.asset_id = kAsset;
     event.kind = kind;
@@ -57,6 +58,8 @@ class Chain {
     event.header.event_time_known = true;
     event.header.event_time_ns = synthetic::month(month, 20).nanoseconds;
     event.header.message_id = last_said_ = retraction_id(kAsset, kind, what, {event.header.event_time_ns});
+    event.tests_known = !tests.empty();
+    event.test_ids = tests;
     return take(event);
   }
   std::string replaced(int month) {
@@ -143,6 +146,24 @@ TEST(HealthAfterRetraction, TrendAndGradeAreThoseWithoutTheTest) {
     EXPECT_TRUE(answer.header.pst_id.empty());
     EXPECT_EQ(answer.header.source_ids.front(), deceived.last_said());
     EXPECT_EQ(said(answer), said(never)) << "at once";
+    if (restarted) deceived.restart_health();
+    for (int number = 13; number < 20; ++number)
+      ASSERT_EQ(text(deceived.test(number, leaky(0.8))), text(undisturbed.test(number, leaky(0.8)))) << number;
+  }
+}
+
+/// Whatever is known when it is fetched back (message/act_record.hpp).
+TEST(HealthAfterRetraction, OfAllSinceADateMeansTheTestsThatAreNamed) {
+  for (const bool restarted : {false, true}) {
+    Chain deceived, undisturbed;
+    std::string wrong;
+    for (int number = 0; number < 12; ++number) {
+      if (number == 9) wrong = deceived.test(60, leaky(0.62)).header.pst_id;
+      deceived.test(number, leaky(0.9 - 0.005 * number));
+      undisturbed.test(number, leaky(0.9 - 0.005 * number));
+    }
+    const HealthReport answer = deceived.say(kTestsRetracted, format_utc(synthetic::month(5, 25)), 12, {wrong});
+    EXPECT_EQ(answer.retracted_test_ids, std::vector<std::string>{wrong});
     if (restarted) deceived.restart_health();
     for (int number = 13; number < 20; ++number)
       ASSERT_EQ(text(deceived.test(number, leaky(0.8))), text(undisturbed.test(number, leaky(0.8)))) << number;

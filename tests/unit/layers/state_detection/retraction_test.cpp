@@ -40,7 +40,8 @@ class Detection {
     take(made.window);
     return take(made.features);
   }
-  StateReport say(std::string_view kind, const std::string& what, int month) {
+  StateReport say(std::string_view kind, const std::string& what, int month,
+                  const std::optional<std::vector<std::string>>& tests = {}) {
     MaintenanceEvent event;
     event.asset_id = kAsset;
     event.kind = kind;
@@ -49,6 +50,8 @@ class Detection {
     event.header.event_time_known = true;
     event.header.event_time_ns = synthetic::month(month, 20).nanoseconds;
     event.header.message_id = retraction_id(kAsset, kind, what, {event.header.event_time_ns});
+    event.tests_known = tests.has_value();
+    event.test_ids = tests.value_or(std::vector<std::string>());
     return take(event);
   }
   std::string replaced(int month) {
@@ -193,6 +196,26 @@ TEST(Retraction, OfATestThatIsStillToComeHoldsWhenItComes) {
     if (restarted) warned.restart();
     for (int number = 4; number < 10; ++number)
       ASSERT_EQ(judgements_of(warned.test(number)), judgements_of(undisturbed.test(number))) << number;
+  }
+}
+
+/// Fetched back when later tests are known, it means those that it meant (message/act_record.hpp).
+TEST(Retraction, OfAllSinceADateMeansTheTestsThatItNames) {
+  for (const bool restarted : {false, true}) {
+    Detection deceived, undisturbed;
+    for (int number = 0; number < 5; ++number) {
+      deceived.test(number);
+      undisturbed.test(number);
+    }
+    const std::string wrong = deceived.test(40, stiff()).header.pst_id;
+    deceived.test(50);
+    undisturbed.test(50);
+    const StateReport answer = deceived.say(kTestsRetracted, format_utc(synthetic::month(30, 1)), 51, {{wrong}});
+    EXPECT_TRUE(answer.retracted_tests_known);
+    EXPECT_EQ(answer.retracted_test_ids, std::vector<std::string>{wrong});
+    if (restarted) deceived.restart();
+    for (int number = 51; number < 58; ++number)
+      ASSERT_EQ(judgements_of(deceived.test(number)), judgements_of(undisturbed.test(number))) << number;
   }
 }
 

@@ -43,7 +43,7 @@ fail() { echo "$me: $1" >&2; exit 2; }
 layers=(data-acquisition data-manipulation state-detection health-assessment prognostic-assessment advisory-generation)
 roles=(sender replay operator maintenance reviewer engineer subscriber)
 conclusions='test_features state_report health_report leakage_estimate remaining_life pst_request advisory acknowledgement
-  maintenance_event retraction model_discrepancy model_acceptance'
+  maintenance_event retraction model_discrepancy model_acceptance act_record'
 rights=(read raw_samples resend_request acknowledgement maintenance_event retraction model_acceptance)
 
 # Sets `writes` and `reads`: the topics of a layer (docs/topics.md), or of somebody with these rights.
@@ -51,16 +51,18 @@ topics_of() {  # NAME RIGHTS
   local right
   writes='' reads='service_status resend_request'
   case $1 in
-    data-acquisition) writes='sample_block' reads+=' raw_samples maintenance_event retraction' ;;
+    data-acquisition) writes='sample_block act_record' reads+=' raw_samples maintenance_event retraction act_record' ;;
     data-manipulation) writes='test_window test_features' reads+=' sample_block' ;;
-    state-detection) writes='state_report' reads+=' test_window test_features maintenance_event retraction model_acceptance model_discrepancy' ;;
+    state-detection)
+      writes='state_report act_record'
+      reads+=' test_window test_features maintenance_event retraction model_acceptance model_discrepancy act_record' ;;
     health-assessment) writes='health_report model_discrepancy' reads+=' test_window test_features state_report' ;;
     prognostic-assessment)
-      writes='leakage_estimate remaining_life pst_request'
-      reads+=' test_window health_report maintenance_event retraction model_acceptance model_discrepancy' ;;
+      writes='leakage_estimate remaining_life pst_request act_record'
+      reads+=' test_window health_report maintenance_event retraction model_acceptance model_discrepancy act_record' ;;
     advisory-generation)
-      writes='advisory'
-      reads+=' state_report health_report leakage_estimate remaining_life acknowledgement maintenance_event retraction' ;;
+      writes='advisory act_record'
+      reads+=' state_report health_report leakage_estimate remaining_life acknowledgement maintenance_event retraction act_record' ;;
     *)
       for right in ${2//,/ }; do
         case $right in

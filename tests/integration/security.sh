@@ -96,7 +96,7 @@ documented() {  # LAYER COLUMN
 # What DDS Security itself grants: to each layer what docs/topics.md says of it, to each role its own acts and no other.
 check_rights() {
   local name conclusions acts granted expected
-  conclusions='acknowledgement advisory health_report leakage_estimate maintenance_event model_acceptance model_discrepancy pst_request
+  conclusions='acknowledgement act_record advisory health_report leakage_estimate maintenance_event model_acceptance model_discrepancy pst_request
     remaining_life retraction state_report test_features'
   local -A acts_of=([sender]=raw_samples [replay]='raw_samples resend_request' [operator]=acknowledgement
     [maintenance]=maintenance_event [reviewer]=retraction [engineer]=model_acceptance [subscriber]='')

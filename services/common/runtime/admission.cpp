@@ -27,6 +27,9 @@ constexpr std::uint64_t kMostBlocks = kTestLimits.most_numbers;
 /// Of an asset: not yet concluded here, the newest of them, as their ids begin with the date.
 constexpr std::size_t kMostOnTheirWay = 256;
 
+/// How the name of a test begins that has none yet.
+constexpr const char* kUnnamed = "of ";
+
 constexpr const char* kHasControls = "has control or invisible characters";
 
 bool is_report(const Message& message) {
@@ -148,6 +151,11 @@ Admission::Admission(std::map<std::string, UtcTime> commissioned, ConfiguredAsse
 }
 
 bool Admission::note(const Message& message, bool concluded) {
+  if (const auto* record = std::get_if<ActRecord>(&message)) {
+    for (const MaintenanceEvent& event : record->events) note_named_tests(event);
+    return false;
+  }
+  if (const auto* event = std::get_if<MaintenanceEvent>(&message)) note_named_tests(*event);
   if (const auto* block = std::get_if<SampleBlock>(&message); block && !is_made_up(block->source_id))
     recorded_.insert(block->asset_id);
   const std::string asset_id = asset_of(message);
@@ -201,13 +209,27 @@ std::vector<std::string> Admission::take_alike() { return std::exchange(alike_, 
 void Admission::note_test(const Message& message, UtcTime time) {
   RetractedTests& tests = tests_[asset_of(message)];
   std::set<UtcTime>& named = named_[asset_of(message)];
-  const std::string unnamed = "of " + format_utc(time);
+  const std::string unnamed = kUnnamed + format_utc(time);
   if (topic_of(message) == Topic::raw_samples) {
     if (!named.contains(time)) tests.know(unnamed, time);
     return;
   }
   tests.know(header_of(message).pst_id, time);
   if (named.insert(time).second) tests.forget(unnamed);
+}
+
+void Admission::note_named_tests(const MaintenanceEvent& event) {
+  if (event.tests_known) (void)tests_[event.asset_id].name(event.header.message_id, event.test_ids);
+}
+
+std::vector<std::string> Admission::tests_meant(const std::string& asset_id, const Retraction& retraction) const {
+  std::set<std::string> meant;
+  if (const auto tests = tests_.find(asset_id); tests != tests_.end()) meant = tests->second.meant_by(retraction);
+  std::erase_if(meant, [](const std::string& name) { return name.starts_with(kUnnamed); });
+  if (const auto coming = on_their_way_.find(asset_id); coming != on_their_way_.end())
+    for (const auto& [pst_id, time] : coming->second)
+      if (time && time >= retraction.since) meant.insert(pst_id);
+  return {meant.begin(), meant.end()};
 }
 
 bool Admission::note_act(const std::string& asset_id, const std::string& act_id) {
@@ -277,6 +299,14 @@ std::optional<std::string> Admission::refusal(const Message& message, UtcTime no
     return "its time, " + format_utc({header.event_time_ns}) + ", is none from 1970 to 2260";
   if (is_report(message)) return refusal_of_report(message, now);
   return time_of_test(message) ? refusal_of_time(message, now) : refusal_of_future_act(message, now);
+}
+
+std::optional<std::string> Admission::refusal_of_recorded(const Message& act) const {
+  if (auto why = refusal_of_texts(act)) return why;
+  const Header& header = header_of(act);
+  if (header.event_time_known && !is_time(header.event_time_ns))
+    return "its time, " + format_utc({header.event_time_ns}) + ", is none from 1970 to 2260";
+  return refusal_of_kind(act);
 }
 
 std::optional<std::string> Admission::refusal_of_report(const Message& message, UtcTime now) const {

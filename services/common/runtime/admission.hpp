@@ -73,6 +73,13 @@ class Admission {
   [[nodiscard]] std::optional<std::string> refusal_of_asset(const Message& message) const;
   /// Why the message of such an asset is not to be taken in; none for nearly all.
   [[nodiscard]] std::optional<std::string> refusal(const Message& message, UtcTime now) const;
+  /// Likewise, of an act that a neighbour took and recorded: whether it means something, and lies in the future, was
+  /// judged there, by tests of which this service may not have heard yet.
+  [[nodiscard]] std::optional<std::string> refusal_of_recorded(const Message& act) const;
+  /// Why a retraction of many is not taken that means nothing known here; none where there is room for it.
+  [[nodiscard]] std::optional<std::string> refusal_of_idle(const Message& message) const;
+  /// The tests that a retraction of many means: those that are known, and those on their way.
+  [[nodiscard]] std::vector<std::string> tests_meant(const std::string& asset_id, const Retraction& retraction) const;
   /// Whether an act is to wait until what it means is known.
   [[nodiscard]] bool is_ahead(const Message& message) const;
   /// Whether a retraction of the asset changes nothing. A test that others conclude from is known, with its date, before
@@ -91,6 +98,7 @@ class Admission {
  private:
   void note_name(const std::string& asset_id);
   void note_test(const Message& message, UtcTime time);
+  void note_named_tests(const MaintenanceEvent& event);
   [[nodiscard]] bool knows_test(const std::string& asset_id, const std::string& pst_id) const;
   [[nodiscard]] std::optional<std::string> refusal_of_test(const RawSamples& raw) const;
   [[nodiscard]] std::optional<std::string> refusal_of_time(const Message& message, UtcTime now) const;
@@ -100,7 +108,6 @@ class Admission {
   [[nodiscard]] std::optional<std::string> refusal_of_report(const Message& message, UtcTime now) const;
   /// The retraction where it changes nothing and is beyond those that are answered all the same.
   [[nodiscard]] std::optional<Retraction> idle_retraction(const Message& message) const;
-  [[nodiscard]] std::optional<std::string> refusal_of_idle(const Message& message) const;
   [[nodiscard]] std::optional<std::string> refusal_of_future_act(const Message& message, UtcTime now) const;
 
   std::map<std::string, UtcTime> commissioned_;

@@ -42,13 +42,19 @@ LayerRunner::LayerRunner(const LayerMaker& make_layer, Bus& bus, Bus& heartbeat_
       retention_(options_.retention),
       lanes_(
           make_layer, [this](const std::string& message_id) { return input(message_id); }, [&bus] { bus.wake(); },
-          options_.lanes) {}
+          options_.lanes) {
+  inputs_.assign(kind_->inputs().begin(), kind_->inputs().end());
+  outputs_.assign(kind_->outputs().begin(), kind_->outputs().end());
+  if (!keeps_acts()) return;
+  inputs_.push_back(Topic::act_record);
+  outputs_.push_back(Topic::act_record);
+}
 
 Status LayerRunner::start() {
   // Subscribed first: what comes while the past is restored waits on the bus.
   if (Status status = bus_.subscribe_service_topics(); !status) return status;
-  if (Status status = bus_.subscribe(kind_->inputs()); !status) return status;
-  if (Status status = bus_.announce(kind_->outputs()); !status) return status;
+  if (Status status = bus_.subscribe(inputs_); !status) return status;
+  if (Status status = bus_.announce(outputs_); !status) return status;
   const auto positions = journal_.positions();
   if (!positions) return fail(positions.error());
   for (const StreamPosition& known : *positions) {
@@ -70,9 +76,14 @@ Status LayerRunner::start() {
   if (Status status = restore_awaiting(); !status) return status;
   if (Status status = restore_past(); !status) return status;
   if (Status status = look_at_own_acts(); !status) return status;
+  if (Status status = record_earlier_acts(); !status) return status;
   const auto is_new = journal_.is_new();
   if (!is_new) return fail(is_new.error());
+  const auto anchors = journal_.anchors();
+  if (!anchors) return fail(anchors.error());
+  for (const AuditAnchor& heard : *anchors) compared_.insert(heard.service);
   is_new_ = *is_new && last_act_.sequence == 0;
+  waits_for_acts_ = is_new_ && keeps_acts() && !options_.strangers.services.empty();
   started_ns_ = clock_.now().nanoseconds;
   look_at_clock();
   if (Status status = publish_latest(); !status) return status;
@@ -84,7 +95,8 @@ Status LayerRunner::start() {
   status.started_ns = started_ns_;
   status.process_id = ::getpid();
   status.state = forgotten_.empty() ? "running" : kRestoring;
-  status.written = position_of_acts();  // the first heartbeat tells it, which others compare with their own record
+  status.written = written();  // the first heartbeat tells of acts, which others compare with their own record
+  alarms_.tell(status);
   Heartbeat::Options beats = options_.heartbeat;
   const bool takes_samples = std::ranges::find(kind_->inputs(), Topic::raw_samples) != kind_->inputs().end();
   auto confirmed = std::make_shared<ConfirmedPositions>(journal_.to_disk(), takes_samples);
@@ -126,6 +138,7 @@ Status LayerRunner::step(std::chrono::milliseconds timeout) {
   for (BusItem& item : items) sort_in(std::move(item));
   if (takes_local) take_local();
   if (Status status = take_ready(); !status) return status;
+  look_whether_acts_are_here();
   send_outbox();
   if (Status status = serve_resends(); !status) return status;
   send_requests();
@@ -169,7 +182,7 @@ Survives LayerRunner::batch_survives() const {
     return one.stream.sequence == 0 && topic_of(*one.message) != Topic::raw_samples;
   });
   const bool refused = std::ranges::any_of(results_, [](const auto& one) { return !one.conclusion.refused.empty(); });
-  const bool acted = !acts_.empty() || !no_longer_awaiting_.empty() || refused;
+  const bool acted = !acts_.empty() || !records_.empty() || !no_longer_awaiting_.empty() || refused;
   return said_once || acted || took_local_ ? Survives::power_cuts : Survives::kills;
 }
 
@@ -182,7 +195,7 @@ Status LayerRunner::take_ready() {
   for (; !ready_.empty(); ready_.pop_front())
     if (Status status = take(std::move(ready_.front())); !status) return status;
   if (Status status = let_lanes_work(); !status) return status;
-  if (!taken_.empty() || !results_.empty() || !uncommitted_.empty() || !acts_.empty() ||
+  if (!taken_.empty() || !results_.empty() || !uncommitted_.empty() || !acts_.empty() || !records_.empty() ||
       !changed_refused_tests_.empty())
     if (Status status = in_batch([this] { return store_batch(); }, batch_survives()); !status) return status;
   took_local_ = false;
@@ -233,7 +246,16 @@ Status LayerRunner::name_as_kept(Message& message) {
   return {};
 }
 
-Status LayerRunner::take(Message message) {
+std::optional<std::string> LayerRunner::refusal_of(const Message& message, const ActRecord* record) const {
+  auto refused =
+      record == nullptr ? admission_.refusal(message, clock_.now()) : admission_.refusal_of_recorded(message);
+  if (!refused) refused = refusal_of_confirmation(message);
+  if (!refused) refused = refusal_of_waiting(message);
+  if (!refused && (record == nullptr || record->is_ahead)) refused = refusal_of_ahead(message);
+  return refused;
+}
+
+Status LayerRunner::take(Message message, const ActRecord* record) {
   if (Status named = name_as_kept(message); !named) return named;
   const Header& header = header_of(message);
   StreamPosition stream;
@@ -256,10 +278,9 @@ Status LayerRunner::take(Message message) {
     return {};
   }
   header_of(message).message_id = **id;
-  auto refused = admission_.refusal(message, clock_.now());
-  if (!refused) refused = refusal_of_confirmation(message);
-  if (!refused) refused = refusal_of_waiting(message);
-  if (!refused) refused = refusal_of_ahead(message);
+  if (topic_of(message) == Topic::act_record) return take_record(std::move(message), stream);
+  if (record == nullptr) name_tests(message);
+  auto refused = refusal_of(message, record);
   if (refused) {
     note_error(std::string(name_of(topic_of(message))) + " refused: " + *refused);
     log_message(LogLevel::warn, "refused", message, {{"reason", *refused}});
@@ -268,12 +289,20 @@ Status LayerRunner::take(Message message) {
       note_refused_test(*raw, *refused);
       return {};
     }
+    if (may_be_fetched_later(message)) {
+      (void)note_act(message, refused, InputState::consumed, record);
+      return {};
+    }
   }
   if (!refused) admission_.note_asset(asset_of(message));
   const bool for_desk = is_for_desk(message);
   if (for_desk && !refused) refused = tell_desk(message);
   InputState state = for_desk ? InputState::consumed : is_set_aside(message) ? InputState::set_aside : InputState::open;
-  if (!for_desk || desk_) state = note_act(message, refused, state);
+  if (!is_listened_to(message))
+    state = InputState::consumed;  // kept for those who lose it
+  else if (!for_desk || desk_)
+    state = note_act(message, refused, state, record);
+  if (!refused && !for_desk) keep_record(message, state == InputState::ahead);
   if (state == InputState::open && has_no_samples_any_more(message)) state = InputState::consumed;
   const std::string asset_id = asset_of(message);
   taken_ids_[**id] = taken_.size();
@@ -365,6 +394,7 @@ Status LayerRunner::store_batch() {
   for (const Taken& one : taken_)
     if (Status status = journal_.add_input(*one.message, one.stream, clock_.now(), one.state); !status) return status;
   if (Status status = record_acts(); !status) return status;
+  if (Status status = keep({.outputs = std::exchange(records_, {}), .consumed = {}}); !status) return status;
   if (Status status = keep_refused_tests(); !status) return status;
   for (const auto& [stream, sequence] : uncommitted_)
     if (Status status = journal_.set_position({stream.first, stream.second, sequence}); !status) return status;
@@ -390,6 +420,7 @@ Status LayerRunner::keep(Conclusion conclusion) {
     forget_damage(header_of(**kept).message_id);
     note_alarms_of(**kept);
     note_advice_of(**kept);
+    note_standing(**kept);
     // Data acquisition knows a test by its name only from its own blocks on.
     if (admission_.note(**kept)) heard_of_.insert(asset_of(**kept));
     outbox_.add(std::move(**kept));
@@ -459,12 +490,19 @@ std::vector<StreamPosition> LayerRunner::position_of_acts() const {
   return {{kActsTopic, last_act_.hash, static_cast<std::uint64_t>(last_act_.sequence)}};
 }
 
-void LayerRunner::report_progress() {
-  if (!heartbeat_) return;  // the past is still being restored
+std::vector<StreamPosition> LayerRunner::written() const {
   std::vector<StreamPosition> written;
   for (const auto& [topic, sequence] : journal_.written())
     written.push_back({std::string(name_of(topic)), journal_.writer_id(), sequence});
+  // Also where nothing stands in it: who has no such stream has acts that nobody can fetch back.
+  if (!journal_.written().contains(Topic::act_record))
+    written.push_back({std::string(name_of(Topic::act_record)), journal_.writer_id(), 0});
   std::ranges::copy(position_of_acts(), std::back_inserter(written));
+  return written;
+}
+
+void LayerRunner::report_progress() {
+  if (!heartbeat_) return;  // the past is still being restored
   std::vector<StreamPosition> received;
   for (const Key& stream : reader_->active()) {
     const auto position = committed_.find(stream);
@@ -475,7 +513,7 @@ void LayerRunner::report_progress() {
     const std::uint64_t open = journal_.open_inputs();
     const std::uint64_t idle = std::min<std::uint64_t>(lanes_.held() + waiting_in_vain_, open);
     status.pending_inputs = std::max<std::uint64_t>(open - idle, lanes_.open()) + ready_.size();
-    status.written = std::move(written);
+    status.written = written();
     status.received = std::move(received);
     status.last_error = last_error_;
     status.state = forgotten_.empty() ? "running" : kRestoring;

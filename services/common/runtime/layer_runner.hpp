@@ -64,6 +64,9 @@ struct RunnerOptions {
   std::chrono::milliseconds least_awake{120'000};
   /// After so long an asset is recalled all the same: time passes for it too, and its tests become overdue.
   std::chrono::milliseconds longest_sleep{3'600'000};
+  /// Where the journal is new, nothing that others concluded is taken until what people said is fetched back, but for no
+  /// longer than this: a service that never runs tells nothing.
+  std::chrono::milliseconds longest_without_acts{10'000};
   /// Nor while the bus is not emptied, but for no longer than this: what then still waits is a flood's, as a bus gives
   /// each sender its turn.
   std::chrono::milliseconds longest_wait{5000};
@@ -138,7 +141,10 @@ class LayerRunner {
   /// Also of what is taken and not yet committed; none where it is not known.
   [[nodiscard]] Result<std::optional<std::string>> asset_of_input(const std::string& message_id);
   [[nodiscard]] Status name_as_kept(Message& message);
-  [[nodiscard]] Status take(Message message);
+  /// `record`: of a neighbour, from which the message is fetched back; null where it came itself.
+  [[nodiscard]] Status take(Message message, const ActRecord* record = nullptr);
+  /// Why it is not taken; none for nearly all.
+  [[nodiscard]] std::optional<std::string> refusal_of(const Message& message, const ActRecord* record) const;
   [[nodiscard]] Result<std::optional<std::string>> identify_input(const Message& message);
   /// Gives the lanes a moment to conclude from what was taken.
   [[nodiscard]] Result<std::optional<Message>> input(const std::string& message_id);
@@ -161,6 +167,8 @@ class LayerRunner {
   void send_outbox();
   void note_error(const std::string& text);
   [[nodiscard]] std::vector<StreamPosition> position_of_acts() const;
+  /// How far the own streams go, and the record of acts.
+  [[nodiscard]] std::vector<StreamPosition> written() const;
   void report_progress();
 
   // The past (layer_runner_past.cpp).
@@ -226,9 +234,11 @@ class LayerRunner {
   [[nodiscard]] std::optional<std::string> refusal_of_waiting(const Message& message) const;
   [[nodiscard]] bool waits_for_second(const Message& message) const;
   /// Writes down who said it, and what becomes of it: `state` for what no person said.
-  [[nodiscard]] InputState note_act(const Message& message, const std::optional<std::string>& refused,
-                                    InputState state);
+  [[nodiscard]] InputState note_act(const Message& message, const std::optional<std::string>& refused, InputState state,
+                                    const ActRecord* record);
   [[nodiscard]] std::optional<std::string> refusal_of_ahead(const Message& message) const;
+  /// Whether an act is refused because what it means is not known here: where a neighbour knows it, it comes again.
+  [[nodiscard]] bool may_be_fetched_later(const Message& message) const;
   /// Gives layers the acts that were ahead of what they mean, as far as that is known now.
   [[nodiscard]] Status give_acts_ahead();
   [[nodiscard]] Status give_acts_ahead(const std::string& asset_id);
@@ -236,8 +246,29 @@ class LayerRunner {
   /// Gives the layer what this confirms, and forgets what it rejects.
   void confirm(const Message& message);
   [[nodiscard]] Status record_acts();
+  // What the services keep of it for each other (layer_runner_records.cpp).
+  [[nodiscard]] bool keeps_acts() const;
+  [[nodiscard]] bool is_listened_to(const Message& act) const;
+  void name_tests(Message& act) const;
+  /// Writes the act into the own record, in the running batch.
+  void keep_record(const Message& act, bool is_ahead);
+  /// Once, after an update from a version that kept no such record.
+  [[nodiscard]] Status record_earlier_acts();
+  /// In a retraction of many: the tests that were known then.
+  [[nodiscard]] Status name_tests_known(MaintenanceEvent& event, UtcTime at);
+  /// Of a neighbour: the act in it is taken where it is not known here.
+  [[nodiscard]] Status take_record(Message message, const StreamPosition& stream);
+  /// Whether it is not taken now: it waits, or comes again.
+  [[nodiscard]] bool waits_for_acts(const Message& message);
+  void look_whether_acts_are_here();
+  void note_standing(const Message& output);
+  [[nodiscard]] bool is_of_later_advice(const Message& act) const;
+
   /// What another service tells of its record of acts.
   void hear_of_acts(const ServiceStatus& status);
+  void keep_anchor(const AuditAnchor& heard);
+  void note_older_acts(const ServiceStatus& status);
+  [[nodiscard]] std::optional<std::string> lost_for_ever() const;
   void hear_of_own_outputs(const ServiceStatus& status);
   [[nodiscard]] bool reads_samples() const;
   /// Keeps it, and looks how far the own record goes.
@@ -279,6 +310,8 @@ class LayerRunner {
   [[nodiscard]] Status count_what_waits_in_vain();
 
   const std::unique_ptr<Layer> kind_;  ///< of no asset: says what all of them are called and read
+  std::vector<Topic> inputs_;          ///< what the layer reads, and the neighbours' records of acts
+  std::vector<Topic> outputs_;         ///< what it writes, and the own record of acts
   Bus& bus_;
   Bus& heartbeat_bus_;
   Journal& journal_;
@@ -296,14 +329,20 @@ class LayerRunner {
   std::set<std::string> heard_of_;                        ///< of those assets, the ones of which something new is known
   std::size_t acts_on_unknown_assets_ = 0;                ///< recorded while the alarm of them stands
   std::vector<OperatorAct> acts_;                         ///< of the running batch
+  std::vector<Message> records_;                          ///< of the running batch: own act_records
+  bool waits_for_acts_ = false;                           ///< the journal is new, and acts come before all else
+  std::vector<Message> said_meanwhile_;                   ///< by people, to this service itself
+  std::map<std::string, std::string> standing_;           ///< advisory_id of the advice that stands, by asset
   AuditAnchor last_act_;                                  ///< of the own record
   std::map<std::string, AuditAnchor> heard_acts_;         ///< the last of each other service, as kept
   std::vector<AuditAnchor> new_anchors_;                  ///< not yet kept
   bool is_new_ = false;                                   ///< the journal, and not yet compared with others' records
   std::set<std::string> first_heard_;                     ///< services that were heard since the start
+  std::set<std::string> compared_;                        ///< whose records the journal was compared with before
   std::string has_older_acts_;                            ///< of them, one whose record began before the own journal
-  std::string has_read_more_;                             ///< one that read samples of a journal before the own one
-  std::vector<LaneResult> results_;                       ///< not yet in the journal
+  std::string has_unrecorded_acts_;  ///< likewise, and of an earlier version that keeps no act_record
+  std::string has_read_more_;        ///< one that read samples of a journal before the own one
+  std::vector<LaneResult> results_;  ///< not yet in the journal
   Outbox outbox_;
   std::map<Key, std::uint64_t> committed_;    ///< positions in the journal
   std::map<Key, std::uint64_t> uncommitted_;  ///< positions of the running batch

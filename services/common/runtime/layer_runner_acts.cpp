@@ -13,7 +13,6 @@ namespace sealwatch {
 namespace {
 
 constexpr const char* kAwaitsConfirmation = "awaits_confirmation";
-constexpr const char* kTaken = "taken";
 constexpr const char* kAhead = "waits until what it means is known here";
 constexpr std::ptrdiff_t kMostAwaiting = 64;  ///< of an asset
 /// Of an asset: a service that is behind has not so many meant acts before it, and whoever sends more floods.
@@ -34,32 +33,29 @@ std::string plain(const std::string& who) {
   return name;
 }
 
-/// That a new journal has not got what people said, of which another service has a record.
-SetAside acts_lost(std::string_view service, const std::string& other, UtcTime now) {
+/// That something of a new journal cannot be had back.
+SetAside journal_lost(std::string_view service, const std::string& what, UtcTime now) {
   return {.message_id = "journal/" + std::string(service),
           .topic = {},
           .asset_id = {},
           .pst_id = {},
           .since_ns = now.nanoseconds,
-          .reason =
-              "the journal was lost and is made again from the neighbours' messages, but for what people said, "
-              "of which " +
-              other +
-              " has a record: retract, accept and acknowledge again what sealwatch audit shows to be "
-              "in force"};
+          .reason = "the journal was lost and is made again from the neighbours' messages, but for " + what};
 }
 
-/// That a new journal has not got the samples that another service has read from one before.
-SetAside samples_lost(std::string_view service, const std::string& other, UtcTime now) {
-  return {.message_id = "journal/" + std::string(service),
-          .topic = {},
-          .asset_id = {},
-          .pst_id = {},
-          .since_ns = now.nanoseconds,
-          .reason = "the journal was lost, with the samples of earlier tests and what people said, of which " + other +
-                    " has a record: restore a backup, or retract and acknowledge again what sealwatch audit shows to "
-                    "be in force"};
+/// What `other`, of an earlier version, has taken, and keeps for nobody.
+std::string what_people_said(const std::string& other) {
+  return "what people said, of which " + other +
+         " has a record: retract, accept and acknowledge again what sealwatch audit shows to be in force";
 }
+
+/// What `other` has read, and nobody sends again.
+std::string samples_of_earlier_tests(const std::string& other) {
+  return "the samples of earlier tests, which " + other + " has read: restore a backup";
+}
+
+constexpr const char* kSaidToDesk =
+    "who acknowledged and shelved alarms, and which assets are out of service: say so again where it holds";
 
 /// Whether it rejects what it speaks of.
 bool rejects(const Message& message) {
@@ -136,10 +132,17 @@ std::optional<std::string> LayerRunner::refusal_of_ahead(const Message& message)
          " such ones of asset " + asset_of(message) + " wait already; find out who sends them";
 }
 
-InputState LayerRunner::note_act(const Message& message, const std::optional<std::string>& refused, InputState state) {
+bool LayerRunner::may_be_fetched_later(const Message& message) const {
+  return admission_.refusal_of_idle(message) || refusal_of_ahead(message);
+}
+
+InputState LayerRunner::note_act(const Message& message, const std::optional<std::string>& refused, InputState state,
+                                 const ActRecord* record) {
   const bool waits = !refused && waits_for_second(message);
-  const bool is_ahead = !refused && !waits && admission_.is_ahead(message);
-  const std::string outcome = refused ? *refused : waits ? "waits for a second person" : is_ahead ? kAhead : kTaken;
+  const bool is_later_advice = record != nullptr && is_of_later_advice(message);
+  const bool is_ahead = !refused && !waits && (admission_.is_ahead(message) || is_later_advice);
+  std::string outcome = refused ? *refused : waits ? "waits for a second person" : is_ahead ? kAhead : kTaken;
+  if (record != nullptr) outcome += ", fetched back from " + visible(record->header.producer);
   if (auto act = act_of(message, clock_.now(), outcome)) acts_.push_back(std::move(*act));
   if (refused || act_confirmed_by(message)) return InputState::consumed;
   return waits ? InputState::awaiting : is_ahead ? InputState::ahead : state;
@@ -158,11 +161,12 @@ Status LayerRunner::give_acts_ahead(const std::string& asset_id) {
   if (!ids) return fail(ids.error());
   for (const std::string& act_id : *ids) {
     const auto retraction = retraction_of(asset_id, act_id);
-    if (!retraction || admission_.means_nothing(asset_id, *retraction)) continue;
+    if (retraction && admission_.means_nothing(asset_id, *retraction)) continue;
     auto act = journal_.input(act_id);
     if (!act) return fail(act.error());
-    if (!*act) continue;
+    if (!*act || is_of_later_advice(**act)) continue;
     if (auto taken = act_of(**act, clock_.now(), kTaken)) acts_.push_back(std::move(*taken));
+    keep_record(**act, false);
     no_longer_awaiting_[act_id] = InputState::open;
     if (--acts_ahead_[asset_id] == 0) acts_ahead_.erase(asset_id);
     give(std::make_shared<const Message>(std::move(**act)));
@@ -197,7 +201,7 @@ Result<std::map<std::string, std::vector<LayerRunner::PastAct>>> LayerRunner::pa
   std::map<std::string, std::vector<PastAct>> past;
   for (const AuditEntry& entry : *acts) {
     const OperatorAct& act = entry.act;
-    if (act.outcome != kTaken) continue;
+    if (!is_taken(act.outcome)) continue;
     const auto confirmed =
         act.kind == kActConfirmed ? confirmed_act(act.asset_id, act.subject) : std::optional<std::string>();
     past[act.asset_id].push_back({act.at, confirmed.value_or(act.subject)});
@@ -226,22 +230,33 @@ Status LayerRunner::tell(const Refusal& refused) {
   return act ? record(*act) : Status();
 }
 
-/// A stranger may tell anything; but of whom DDS Security lets nobody else speak, only that service does.
+/// A stranger may tell anything; but of whom DDS Security lets nobody else speak, only that service does. A record is
+/// older than the journal where it is not empty when it is first heard of, ever: later both grow.
 void LayerRunner::hear_of_acts(const ServiceStatus& status) {
   const auto& services = options_.strangers.services;
   const bool is_known = services.empty() || std::ranges::find(services, status.service) != services.end();
   if (!is_known || status.service == kind_->name()) return;
-  const bool is_first = first_heard_.insert(status.service).second;
-  for (const StreamPosition& told : status.written) {
-    if (told.topic != kActsTopic || told.writer_id.size() != kHashLength) continue;
-    const bool is_older = is_first && told.sequence > 0 && last_act_.sequence == 0;
-    if (is_older) has_older_acts_ = status.service;
-    const AuditAnchor heard{status.service, static_cast<std::int64_t>(told.sequence), told.writer_id};
-    AuditAnchor& last = heard_acts_[status.service];
-    if (heard == last) continue;
-    last = heard;
-    if (new_anchors_.size() < kMostNewAnchors) new_anchors_.push_back(heard);
+  const bool is_first = first_heard_.insert(status.service).second && compared_.insert(status.service).second;
+  const auto told =
+      std::ranges::find_if(status.written, [](const StreamPosition& one) { return one.topic == kActsTopic; });
+  if (told == status.written.end() || told->writer_id.size() != kHashLength) {
+    if (is_first) keep_anchor({status.service, 0, audit_begin(status.service)});
+    return;
   }
+  if (is_first && told->sequence > 0 && last_act_.sequence == 0) note_older_acts(status);
+  const AuditAnchor heard{status.service, static_cast<std::int64_t>(told->sequence), told->writer_id};
+  if (std::exchange(heard_acts_[status.service], heard) != heard) keep_anchor(heard);
+}
+
+void LayerRunner::keep_anchor(const AuditAnchor& heard) {
+  if (new_anchors_.size() < kMostNewAnchors) new_anchors_.push_back(heard);
+}
+
+void LayerRunner::note_older_acts(const ServiceStatus& status) {
+  has_older_acts_ = status.service;
+  const bool are_kept =
+      std::ranges::find(status.written, name_of(Topic::act_record), &StreamPosition::topic) != status.written.end();
+  if (!are_kept) has_unrecorded_acts_ = status.service;
 }
 
 bool LayerRunner::reads_samples() const {
@@ -274,19 +289,28 @@ bool LayerRunner::all_heard() const {
   });
 }
 
-/// The neighbours' messages make the conclusions again. Acts were told once, by people who are gone: a retracted test
-/// would count again in this service alone, and nobody would know.
+/// What a new journal lacks that its neighbours have no record of; nothing where all of it can be had back.
+std::optional<std::string> LayerRunner::lost_for_ever() const {
+  std::vector<std::string> lost;
+  if (!has_read_more_.empty()) lost.push_back(samples_of_earlier_tests(has_read_more_));
+  if (keeps_acts() && !has_unrecorded_acts_.empty()) lost.push_back(what_people_said(has_unrecorded_acts_));
+  if (desk_ && !has_older_acts_.empty()) lost.emplace_back(kSaidToDesk);
+  if (lost.empty()) return std::nullopt;
+  std::string all = lost.front();
+  for (std::size_t k = 1; k < lost.size(); ++k) all += "; and for " + lost[k];
+  return all;
+}
+
+/// The neighbours' messages make the conclusions again, and their records have what people said. What nobody can give
+/// back would be missing in this service alone, and nobody would know.
 Status LayerRunner::compare_acts() {
   if (!is_new_) return {};
-  const bool takes_acts = std::ranges::find(kind_->inputs(), Topic::maintenance_event) != kind_->inputs().end();
-  const bool is_lost = (takes_acts && !has_older_acts_.empty()) || !has_read_more_.empty();
-  if (!is_lost && !all_heard()) return {};
+  const auto what = lost_for_ever();
+  if (!what && !all_heard()) return {};
   is_new_ = false;
-  const std::string& other = has_read_more_.empty() ? has_older_acts_ : has_read_more_;
-  const SetAside lost = reads_samples() ? samples_lost(kind_->name(), other, clock_.now())
-                                        : acts_lost(kind_->name(), other, clock_.now());
+  const SetAside lost = journal_lost(kind_->name(), what.value_or(std::string()), clock_.now());
   const bool is_known = std::ranges::find(set_aside_, lost.message_id, &SetAside::message_id) != set_aside_.end();
-  const bool tells = is_lost && !is_known;  // a damaged one that was made again says so itself
+  const bool tells = what && !is_known;  // a damaged one that was made again says so itself
   Status kept = in_batch(
       [&] {
         Status done = journal_.no_longer_new();

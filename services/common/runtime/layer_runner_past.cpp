@@ -59,6 +59,7 @@ Status LayerRunner::recall(const std::string& asset_id) {
         if (const auto said = options_.advice_of_output ? options_.advice_of_output(output) : std::nullopt)
           advice = *said;
         admission_.note(output);
+        note_standing(output);
         latest_.concluded(output, place.sequence);
         replaying_[asset_id] = header_of(output).replay;
         return Status();

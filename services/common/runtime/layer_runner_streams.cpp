@@ -37,7 +37,7 @@ void LayerRunner::sort_in(BusItem item) {
 }
 
 void LayerRunner::sort_in(Message message) {
-  if (!contains(kind_->inputs(), topic_of(message))) return;
+  if (!contains(inputs_, topic_of(message)) || waits_for_acts(message)) return;
   note_strangers(strangers_.hear(message, std::chrono::steady_clock::now().time_since_epoch()));
   // Raw samples that are numbered are refused in their turn: their stream goes on.
   const bool in_its_turn = topic_of(message) == Topic::raw_samples && is_numbered(message);
@@ -96,7 +96,7 @@ void LayerRunner::sort_in(const ServiceStatus& status) {
     ready_.push_back(std::move(next));
   for (const StreamPosition& written : status.written) {
     const auto topic = value_of<Topic>(written.topic);
-    if (!topic || !contains(kind_->inputs(), *topic)) continue;
+    if (!topic || !contains(inputs_, *topic)) continue;
     if (reader_->note_written(written, steady_seconds())) start_anew({written.topic, written.writer_id});
   }
 }
@@ -188,6 +188,7 @@ void LayerRunner::send_requests() {
   if (!ready_.empty() || (full_since_ && now - asked_ < kLongestWithoutAsking)) return;
   asked_ = now;
   for (const ResendRequest& request : reader_->requests(steady_seconds())) {
+    if (waits_for_acts_ && request.topic != name_of(Topic::act_record)) continue;
     log_event(LogLevel::info, "asking again",
               {{"topic", request.topic},
                {"writer", request.writer_id},

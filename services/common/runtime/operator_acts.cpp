@@ -32,4 +32,6 @@ std::optional<OperatorAct> act_of(const Message& message, UtcTime received, std:
   return act;
 }
 
+bool is_taken(std::string_view outcome) { return outcome == kTaken || outcome.starts_with(std::string(kTaken) + ", "); }
+
 }  // namespace sealwatch

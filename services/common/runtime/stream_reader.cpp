@@ -262,6 +262,11 @@ bool StreamReader::is_behind(const std::string& asset_id) const {
   });
 }
 
+bool StreamReader::is_behind_on(std::string_view topic) const {
+  return std::ranges::any_of(streams_,
+                             [&](const auto& entry) { return entry.first.first == topic && is_behind(entry.second); });
+}
+
 std::vector<StreamReader::Missing> StreamReader::missing_of_senders() const {
   constexpr double kSenderIsSilent_s = 10.0;  // one that goes on repeats what is not confirmed every 3 s
   std::vector<Missing> missing;

@@ -20,6 +20,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -71,6 +72,8 @@ class StreamReader {
   [[nodiscard]] bool is_behind(const std::string& asset_id) const;
   /// Whether any stream is.
   [[nodiscard]] bool is_behind() const;
+  /// Whether any of the topic is.
+  [[nodiscard]] bool is_behind_on(std::string_view topic) const;
   /// A sender's blocks that it was asked for in vain, while later ones of it wait.
   struct Missing {
     std::string writer_id;

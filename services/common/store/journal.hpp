@@ -179,6 +179,7 @@ class Journal {
   [[nodiscard]] Status no_longer_new();
   /// Keeps what another service told of its record; between begin and commit.
   [[nodiscard]] Status keep_anchor(const AuditAnchor& heard);
+  [[nodiscard]] Result<std::vector<AuditAnchor>> anchors();
 
   struct Awaiting {
     Message message;

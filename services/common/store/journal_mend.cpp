@@ -273,8 +273,9 @@ void Journal::Database::tell_of_damage(const std::string& aside) {
   DamagedRow row;
   row.message_id = "journal/" + service;
   tell(sql, row,
-       "the journal was damaged and is made again from the neighbours' messages; the old one is " + aside +
-           ": retract, accept and acknowledge again what sealwatch audit shows to be in force");
+       "the journal was damaged and is made again from the neighbours' messages, with what people said; the old one "
+       "is " +
+           aside + ": see that sealwatch audit shows the acts in force, and acknowledge and shelve alarms again");
 }
 
 /// Reads the stream again from there; what is known is passed over by its id.

@@ -211,6 +211,10 @@ Status Journal::keep_anchor(const AuditAnchor& heard) {
   });
 }
 
+Result<std::vector<AuditAnchor>> Journal::anchors() {
+  return database_->guard("reading what was heard of acts", [&] { return anchors_in(database_->sql); });
+}
+
 Result<AuditEntry> Journal::record(const OperatorAct& act) {
   return database_->guard("recording an act", [&] {
     ++database_->batch_rows;

@@ -135,9 +135,13 @@ class Process {
   Status try_step(std::chrono::milliseconds timeout = std::chrono::milliseconds(1)) { return runner_.step(timeout); }
   [[nodiscard]] Journal& journal() { return journal_; }
   [[nodiscard]] int steps() const { return fate_.steps(); }
+  /// What the layer concluded.
   [[nodiscard]] std::vector<Message> outputs() {
     std::vector<Message> found;
-    EXPECT_TRUE(journal_.for_each_output([&](const Message& m) { return found.push_back(m), Status(); }));
+    EXPECT_TRUE(journal_.for_each_output([&](const Message& m) {
+      if (topic_of(m) != Topic::act_record) found.push_back(m);
+      return Status();
+    }));
     return found;
   }
   TestClock& clock() { return clock_; }

@@ -841,11 +841,12 @@ TEST_F(RunnerTest, SaysHowFarItsStreamsGoAndThatItStops) {
     Feeder feeder(network_, blocks_of_tests(2, {"A"}));
     feeder.send(4);
     step(*process, 3);
-    ASSERT_TRUE(step_until([&] { return !listener_.statuses.empty() && listener_.statuses.back().written.size() == 2; },
+    ASSERT_TRUE(step_until([&] { return !listener_.statuses.empty() && listener_.statuses.back().written.size() == 3; },
                            [&] { listener_.listen(milliseconds(5)); }));
     const std::string writer = process->journal().writer_id();
     EXPECT_THAT(listener_.statuses.back().written,
-                ElementsAre(StreamPosition{"test_features", writer, 2}, StreamPosition{"state_report", writer, 2}));
+                ElementsAre(StreamPosition{"test_features", writer, 2}, StreamPosition{"state_report", writer, 2},
+                            StreamPosition{"act_record", writer, 0}));
     EXPECT_EQ(listener_.statuses.back().state, "running");
   }
   listener_.listen();

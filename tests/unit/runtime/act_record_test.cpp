@@ -1,0 +1,438 @@
+// What people said survives the loss of a service's journal: its neighbours keep it, and it is fetched back once.
+#include "sealwatch/message/act_record.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "sealwatch/message/confirmation.hpp"
+#include "sealwatch/message/retracted_tests.hpp"
+#include "services/common/runtime/admission.hpp"
+#include "services/common/store/journal.hpp"
+#include "tests/unit/runtime/harness.hpp"
+
+namespace sealwatch::testing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+using ::testing::StartsWith;
+using ::testing::UnorderedElementsAre;
+
+/// Remembers tests and what people said of them, and says after each which tests count.
+class CountingLayer final : public Layer {
+ public:
+  explicit CountingLayer(std::string name) : name_(std::move(name)) {}
+  [[nodiscard]] std::string_view name() const override { return name_; }
+  [[nodiscard]] std::span<const Topic> inputs() const override {
+    static constexpr std::array kInputs = {Topic::health_report, Topic::maintenance_event, Topic::acknowledgement};
+    return std::span(kInputs).first(name_ == "advisory_generation" ? 3 : 2);
+  }
+  [[nodiscard]] std::span<const Topic> outputs() const override { return kOutputs; }
+  void restore(const Message& own) override {
+    if (const auto* record = std::get_if<ActRecord>(&own))
+      for (const MaintenanceEvent& event : record->events)
+        if (event.tests_known) (void)retracted_.name(event.header.message_id, event.test_ids);
+    const auto* advisory = std::get_if<Advisory>(&own);
+    if (advisory == nullptr) return;
+    const std::string about = advisory->header.message_id.substr(9);
+    if (const auto retraction = retraction_of("A", about)) return retracted_.apply(*retraction);
+    if (!advisory->header.pst_id.empty()) know(advisory->header);
+  }
+  [[nodiscard]] Conclusion receive(const Message& input) override {
+    const Header& said = header_of(input);
+    if (const auto* event = std::get_if<MaintenanceEvent>(&input))
+      if (const auto retraction = retraction_of(*event)) retracted_.apply(*retraction);
+    if (!said.pst_id.empty()) know(said);
+    Advisory advisory;
+    advisory.asset_id = asset_of(input);
+    advisory.header = header("advisory/" + said.message_id, said.pst_id);
+    advisory.header.event_time_known = !said.pst_id.empty();
+    advisory.header.event_time_ns = said.pst_id.empty() ? 0 : said.event_time_ns;
+    advisory.advisory_id = said.pst_id.empty() ? "" : "recommendation/" + said.pst_id;
+    for (const std::string& test : tests_)
+      if (retracted_.counts(test)) advisory.reasons.push_back(test);
+    return {{advisory}, {said.message_id}};
+  }
+
+ private:
+  void know(const Header& test) {
+    tests_.insert(test.pst_id);
+    retracted_.know(test.pst_id, UtcTime{test.event_time_ns});
+  }
+  static constexpr std::array kOutputs = {Topic::advisory};
+  std::string name_;
+  std::set<std::string> tests_;
+  RetractedTests retracted_;
+};
+
+const std::vector<std::string> kLayers = {"state_detection", "prognostic_assessment", "advisory_generation"};
+
+/// Three layers that listen to people and health assessment before them. Who says something goes home at once.
+class ActRecordTest : public ::testing::Test {
+ protected:
+  struct Service {
+    Place place;
+    std::unique_ptr<Process> process;
+  };
+  ActRecordTest() {
+    options_.strangers.services = kLayers;
+    options_.strangers.services.emplace_back("health_assessment");
+  }
+  void SetUp() override {
+    ASSERT_TRUE(health_.subscribe_service_topics());
+    start_all();
+  }
+  void start(const std::string& name) {
+    Service& service = services_[name];
+    service.process = std::make_unique<Process>(
+        network_, [name] { return std::make_unique<CountingLayer>(name); }, service.place.connection(), Fate(),
+        options_);
+    service.process->start();
+  }
+  void start_all() {
+    for (const std::string& name : kLayers)
+      if (!services_[name].process) start(name);
+  }
+  void stop(const std::string& name) { services_[name].process.reset(); }
+  void lose(const std::string& name) {
+    stop(name);
+    for (const auto& entry : std::filesystem::directory_iterator(services_[name].place.directory()))
+      std::filesystem::remove_all(entry.path());
+  }
+  /// Steps all that run, and health assessment beats and sends again what it is asked for.
+  void step() {
+    for (auto& [name, service] : services_)
+      if (service.process) service.process->step();
+    if (is_health_silent_) return;
+    ServiceStatus status;
+    status.service = "health_assessment";
+    status.writer_id = "health_assessment-1";
+    status.state = "running";
+    status.written = {{"health_report", status.writer_id, tests_.size()}};
+    EXPECT_TRUE(health_.publish(status));
+    for (const BusItem& item : health_.receive(std::chrono::milliseconds(0), 1000))
+      if (const auto* request = std::get_if<ResendRequest>(&item); request && request->writer_id == status.writer_id)
+        send_again(*request);
+  }
+  void send_again(const ResendRequest& request) {
+    for (std::uint64_t k = request.first_sequence; k <= std::min<std::uint64_t>(request.last_sequence, tests_.size());
+         ++k)
+      EXPECT_TRUE(health_.publish(tests_[k - 1]));
+  }
+  bool steps_until(const std::function<bool()>& done) {
+    return step_until(
+        done, [this] { step(); }, std::chrono::seconds(20));
+  }
+  void test(const std::string& pst_id, const std::string& date) {
+    HealthReport report;
+    report.asset_id = "A";
+    report.header = header("health_report/" + pst_id, pst_id);
+    report.header.event_time_known = true;
+    report.header.event_time_ns = parse_utc(date + "T00:00:00Z").value().nanoseconds;
+    report.header.writer_id = "health_assessment-1";
+    report.header.stream_sequence = tests_.size() + 1;
+    tests_.emplace_back(report);
+    EXPECT_TRUE(health_.publish(tests_.back()));
+    all_take("advisory/health_report/" + pst_id);
+  }
+  MaintenanceEvent event(std::string_view kind, const std::string& id) {
+    MaintenanceEvent event;
+    event.asset_id = "A";
+    event.kind = kind;
+    event.reported_by = "J. Silva";
+    event.remark = "wrong clock";
+    event.header = header(id, "");
+    event.header.event_time_known = true;
+    event.header.event_time_ns = now_.nanoseconds;
+    return event;
+  }
+  MaintenanceEvent retraction(std::string_view kind, const std::string& what) {
+    now_ = add_seconds(now_, 1.0);
+    return event(kind, retraction_id("A", kind, what, now_));
+  }
+  std::string say(const Message& act) {
+    EXPECT_TRUE(InMemoryBus(network_).publish(act));
+    all_take("advisory/" + header_of(act).message_id);
+    return header_of(act).message_id;
+  }
+  void all_take(const std::string& conclusion) {
+    EXPECT_TRUE(steps_until([&] {
+      return std::ranges::all_of(services_, [&](auto& service) {
+        return !service.second.process || std::ranges::count(conclusions(service.first), conclusion) > 0;
+      });
+    })) << conclusion;
+  }
+  std::vector<std::string> conclusions(const std::string& name) {
+    std::vector<std::string> ids;
+    for (const Message& output : services_[name].process->outputs()) ids.push_back(header_of(output).message_id);
+    return ids;
+  }
+  /// The tests that count by the last conclusion about `test`.
+  std::vector<std::string> counted(const std::string& name) {
+    std::vector<std::string> tests;
+    for (const Message& output : services_[name].process->outputs()) tests = std::get<Advisory>(output).reasons;
+    return tests;
+  }
+  std::vector<std::string> audit(const std::string& name) {
+    std::vector<std::string> lines;
+    const auto acts = services_[name].process->journal().acts();
+    for (const AuditEntry& entry : acts.value()) lines.push_back(entry.act.subject + " " + entry.act.outcome);
+    return lines;
+  }
+  /// Alarms of a service's journal that was lost.
+  std::vector<SetAside> alarms(const std::string& name) {
+    return services_[name].process->journal().quarantine().value();
+  }
+
+  RunnerOptions options_ = fast_options();
+  std::shared_ptr<InMemoryNetwork> network_ = std::make_shared<InMemoryNetwork>();
+  InMemoryBus health_{network_};
+  std::map<std::string, Service> services_;
+  std::vector<Message> tests_;
+  bool is_health_silent_ = false;
+  UtcTime now_ = TestClock().now();
+};
+
+TEST_F(ActRecordTest, ARetractionCountsAgainAfterTheJournalIsLost) {
+  test("a", "2029-01-01");
+  test("b", "2029-02-01");
+  const std::string said = say(retraction(kTestRetracted, "a"));
+  test("c", "2029-03-01");
+  for (const std::string& name : kLayers) EXPECT_THAT(counted(name), ElementsAre("b", "c")) << name;
+  lose("prognostic_assessment");
+  start_all();
+  all_take("advisory/health_report/c");
+  all_take("advisory/" + said);
+  EXPECT_THAT(counted("prognostic_assessment"), ElementsAre("b", "c"));
+  EXPECT_THAT(audit("prognostic_assessment"),
+              ElementsAre(AllOf(StartsWith(said + " taken, fetched back from "), HasSubstr("_"))));
+  for (int k = 0; k < 3; ++k) {  // nothing is doubled, and nothing lost, also where all is lost one after another
+    const std::string& name = kLayers[static_cast<std::size_t>(k)];
+    lose(name);
+    start_all();
+    all_take("advisory/health_report/c");
+    all_take("advisory/" + said);
+    for (int more = 0; more < 50; ++more) step();
+    EXPECT_THAT(counted(name), ElementsAre("b", "c")) << name;
+    EXPECT_THAT(audit(name), SizeIs(1)) << name;
+    EXPECT_THAT(conclusions(name), SizeIs(4)) << name;
+  }
+}
+
+/// Whatever is known when it is fetched back, it means the tests that it meant.
+TEST_F(ActRecordTest, AllSinceADateMeansTheSameTestsAfterTheLoss) {
+  test("a", "2029-01-01");
+  test("b", "2029-02-01");
+  test("c", "2029-03-01");
+  const std::string said = say(retraction(kTestsRetracted, "2029-02-01T00:00:00Z"));
+  test("d", "2029-04-01");
+  for (const std::string& name : kLayers) EXPECT_THAT(counted(name), ElementsAre("a", "d")) << name;
+  for (const std::string& name : kLayers) {
+    lose(name);
+    start_all();
+    all_take("advisory/health_report/d");
+    all_take("advisory/" + said);
+    test("e" + name, "2029-05-01");
+    EXPECT_THAT(counted(name), AllOf(Contains("a"), Contains("d"), Contains("e" + name))) << name;
+    EXPECT_THAT(counted(name), Each(::testing::Not(::testing::AnyOf("b", "c")))) << name;
+    stop(name);
+    start_all();  // by its own journal
+    test("f" + name, "2029-06-01");
+    EXPECT_THAT(counted(name), Each(::testing::Not(::testing::AnyOf("b", "c")))) << name;
+    EXPECT_THAT(counted(name), AllOf(Contains("d"), Contains("f" + name))) << name;
+  }
+  const std::string withdrawn = say(retraction(kRetractionWithdrawn, said));
+  EXPECT_THAT(counted("state_detection"), AllOf(Contains("b"), Contains("c")));
+}
+
+TEST_F(ActRecordTest, WhatWasSaidSinceABackupIsFetchedBackOnce) {
+  namespace fs = std::filesystem;
+  test("a", "2029-01-01");
+  test("b", "2029-02-01");
+  const std::string first = say(retraction(kTestRetracted, "a"));
+  stop("state_detection");
+  const fs::path place = services_["state_detection"].place.directory();
+  const fs::path backup = place.string() + "_backup";
+  fs::copy(place, backup, fs::copy_options::recursive);
+  start_all();
+  const std::string second = say(retraction(kTestRetracted, "b"));
+  lose("state_detection");
+  for (const auto& entry : fs::directory_iterator(backup))
+    fs::copy(entry.path(), place / entry.path().filename(), fs::copy_options::recursive);
+  fs::remove_all(backup);
+  start_all();
+  all_take("advisory/" + second);
+  EXPECT_THAT(audit("state_detection"),
+              ElementsAre(first + " taken", StartsWith(second + " taken, fetched back from ")));
+  EXPECT_THAT(counted("state_detection"), IsEmpty());
+}
+
+/// A maintenance system stays, and says its last word to whoever comes: by what is known there, it would mean others.
+TEST_F(ActRecordTest, WhoSaidItAndIsStillThereChangesNothing) {
+  test("a", "2029-01-01");
+  test("b", "2029-02-01");
+  InMemoryBus stays(network_);
+  const Message said = retraction(kTestsRetracted, "2029-02-01T00:00:00Z");
+  EXPECT_TRUE(stays.publish(said));
+  all_take("advisory/" + header_of(said).message_id);
+  test("c", "2029-03-01");
+  lose("state_detection");
+  start_all();
+  all_take("advisory/health_report/c");
+  all_take("advisory/" + header_of(said).message_id);
+  EXPECT_THAT(counted("state_detection"), ElementsAre("a", "c"));
+  EXPECT_THAT(audit("state_detection"), ElementsAre(HasSubstr("taken, fetched back from")));
+}
+
+/// Earlier versions kept no record for others: what their audit trail tells is written into one.
+TEST_F(ActRecordTest, WhatAnEarlierVersionTookIsHadBackFromItsAuditTrail) {
+  test("a", "2029-01-01");
+  test("b", "2029-02-01");
+  const std::string since = say(retraction(kTestsRetracted, "2029-02-01T00:00:00Z"));
+  const std::string replaced = say(event("seal_replaced", "maintenance_event/A/seal_replaced/x/" + format_utc(now_)));
+  for (const std::string& name : kLayers) stop(name);
+  services_["state_detection"].place.execute("DELETE FROM outputs WHERE topic = 'act_record'");
+  lose("prognostic_assessment");
+  lose("advisory_generation");
+  start_all();
+  all_take("advisory/" + since);
+  all_take("advisory/" + replaced);
+  test("c", "2029-03-01");
+  EXPECT_THAT(counted("prognostic_assessment"), ElementsAre("a", "c"));
+}
+
+/// An older one would part the history behind tests that were concluded from already.
+TEST_F(ActRecordTest, ActsComeBackBeforeTheTests) {
+  test("a", "2029-01-01");
+  const std::string replaced = say(event("seal_replaced", "maintenance_event/A/seal_replaced/x/" + format_utc(now_)));
+  for (int k = 0; k < 20; ++k) test("t" + std::to_string(k), "2029-03-01");
+  lose("prognostic_assessment");
+  start_all();
+  all_take("advisory/health_report/t19");
+  all_take("advisory/" + replaced);
+  EXPECT_EQ(conclusions("prognostic_assessment").front(), "advisory/" + replaced);
+  EXPECT_THAT(conclusions("prognostic_assessment"), SizeIs(22));
+}
+
+/// Nobody listens to it but one service: the others keep it all the same.
+TEST_F(ActRecordTest, AnAcknowledgementIsKeptByThoseWhoDoNotListen) {
+  test("a", "2029-01-01");
+  Acknowledgement seen;
+  seen.asset_id = "A";
+  seen.header = header("acknowledgement/recommendation/a/1", "");
+  seen.advisory_id = "recommendation/a";
+  seen.acknowledged_by = "M. Okoye";
+  EXPECT_TRUE(InMemoryBus(network_).publish(Message(seen)));
+  const auto is_taken = [&] {
+    return std::ranges::count(conclusions("advisory_generation"), "advisory/" + seen.header.message_id) == 1;
+  };
+  EXPECT_TRUE(steps_until(is_taken));
+  for (int k = 0; k < 50; ++k) step();
+  lose("advisory_generation");
+  start_all();
+  EXPECT_TRUE(steps_until(is_taken));
+  EXPECT_THAT(conclusions("advisory_generation"),
+              ElementsAre("advisory/health_report/a", "advisory/" + seen.header.message_id))
+      << "once the advice is there again";
+  EXPECT_THAT(audit("state_detection"), IsEmpty()) << "nobody said it there";
+}
+
+TEST_F(ActRecordTest, WhatWaitsForASecondPersonWaitsAgain) {
+  options_.acts_confirmed_by_second = true;
+  for (const std::string& name : kLayers) stop(name);
+  start_all();
+  test("a", "2029-01-01");
+  const MaintenanceEvent act = retraction(kTestRetracted, "a");
+  EXPECT_TRUE(InMemoryBus(network_).publish(Message(act)));
+  for (int k = 0; k < 20; ++k) step();
+  lose("state_detection");
+  start_all();
+  EXPECT_TRUE(steps_until([&] { return !audit("state_detection").empty(); }));
+  EXPECT_THAT(audit("state_detection"), ElementsAre(HasSubstr("waits for a second person, fetched back from")));
+  all_take("advisory/health_report/a");
+  EXPECT_THAT(counted("state_detection"), ElementsAre("a"));
+  MaintenanceEvent confirmed = event(kActConfirmed, confirmation_id("A", act.header.message_id, now_));
+  confirmed.reported_by = "M. Okoye";
+  EXPECT_TRUE(InMemoryBus(network_).publish(Message(confirmed)));
+  all_take("advisory/" + act.header.message_id);
+  lose("state_detection");
+  start_all();
+  all_take("advisory/health_report/a");
+  all_take("advisory/" + act.header.message_id);
+  EXPECT_THAT(counted("state_detection"), IsEmpty());
+}
+
+/// What people said is here again: there is nothing to be said anew.
+TEST_F(ActRecordTest, NoAlarmStandsWhereAllIsHadBack) {
+  test("a", "2029-01-01");
+  const std::string said = say(retraction(kTestRetracted, "a"));
+  lose("state_detection");
+  start_all();
+  all_take("advisory/" + said);
+  const auto end =
+      std::chrono::steady_clock::now() + std::chrono::milliseconds(1200);  // acts are looked at each second
+  while (std::chrono::steady_clock::now() < end) step();
+  EXPECT_THAT(alarms("state_detection"), IsEmpty());
+}
+
+/// The comparison of records waits for a service that never runs. Meanwhile people speak, and services restart.
+TEST_F(ActRecordTest, NoAlarmComesOfAServiceThatNeverRuns) {
+  options_.strangers.services.emplace_back("data_acquisition");
+  for (const std::string& name : kLayers) lose(name);
+  start_all();
+  const auto for_a_while = [&] {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(1200);
+    while (std::chrono::steady_clock::now() < end) step();
+  };
+  for_a_while();
+  ServiceStatus other;
+  other.service = "health_assessment";
+  other.writer_id = "health_assessment-1";
+  other.written = {{kActsTopic, std::string(64, '1'), 1}};  // somebody has had a test tried again there
+  EXPECT_TRUE(health_.publish(other));
+  for_a_while();
+  for (const std::string& name : kLayers) stop(name);
+  start_all();
+  EXPECT_TRUE(health_.publish(other));
+  for_a_while();
+  for (const std::string& name : kLayers) EXPECT_THAT(alarms(name), IsEmpty()) << name;
+}
+
+/// A flood of retractions of nothing fills what waits. One that a neighbour knows the test of is taken all the same.
+TEST_F(ActRecordTest, AFloodOfInventedOnesKeepsNoRealOneOut) {
+  stop("advisory_generation");
+  test("a", "2029-01-01");
+  stop("prognostic_assessment");
+  test("before", "2029-01-15");
+  test("behind", "2029-02-01");  // known to state detection alone
+  is_health_silent_ = true;
+  start("prognostic_assessment");
+  for (std::size_t k = 0; k < kMostIdleRetractions + 1000; ++k)
+    EXPECT_TRUE(InMemoryBus(network_).publish(Message(retraction(kTestRetracted, "invented" + std::to_string(k)))));
+  const auto is_full = [&](const std::string& name) {
+    return services_[name].process->journal().last_act()->sequence >= static_cast<int>(kMostIdleRetractions) + 1000;
+  };
+  EXPECT_TRUE(steps_until([&] { return is_full("state_detection") && is_full("prognostic_assessment"); }));
+  const Message real = retraction(kTestRetracted, "behind");
+  EXPECT_TRUE(InMemoryBus(network_).publish(real));
+  const std::string id = header_of(real).message_id;
+  const auto waits = [&] {
+    return std::ranges::any_of(audit("prognostic_assessment"), [&](const std::string& line) {
+      return line.starts_with(id + " waits until what it means is known here, fetched back from state_detection");
+    });
+  };
+  EXPECT_TRUE(steps_until(waits));
+  is_health_silent_ = false;
+  all_take("advisory/" + id);
+  EXPECT_THAT(counted("prognostic_assessment"), ElementsAre("a", "before"));
+}
+
+}  // namespace
+}  // namespace sealwatch::testing

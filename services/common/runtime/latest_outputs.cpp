@@ -1,8 +1,21 @@
 #include "services/common/runtime/latest_outputs.hpp"
 
+#include <algorithm>
+
 #include "sealwatch/message/retraction.hpp"
 
 namespace sealwatch {
+
+namespace {
+
+/// It has the time of the act, and whatever test is concluded later says more.
+bool says_that_no_test_counts(const Header& header) {
+  return answers_retraction(header) && std::ranges::all_of(header.source_ids, [](const std::string& id) {
+           return id.find("retraction/") != std::string::npos;
+         });
+}
+
+}  // namespace
 
 void LatestOutputs::concluded(const Message& output, std::uint64_t sequence) {
   const Header& header = header_of(output);
@@ -12,7 +25,8 @@ void LatestOutputs::concluded(const Message& output, std::uint64_t sequence) {
   const bool late = may_be_late && !answers_retraction(header) &&
                     (!header.event_time_known || header.event_time_ns < known->second.event_time_ns);
   if (late) return;
-  latest_[key] = {header.event_time_known, header.event_time_ns, sequence};
+  const bool time_known = header.event_time_known && !says_that_no_test_counts(header);
+  latest_[key] = {time_known, header.event_time_ns, sequence};
   hidden_.insert(key);
 }
 

@@ -54,6 +54,15 @@ TEST(LatestOutputs, OneWithoutTimeIsNotTheLatestOfThoseThatHaveOne) {
   EXPECT_THAT(after({of_event(1, 10), of_event(2, {})}).to_publish(), ElementsAre(Pair(kKey, 1)));
 }
 
+/// It has the time of the act, not of a test. In a journal that is made again it comes before the tests.
+TEST(LatestOutputs, ThatNoTestCountsStandsUntilATestIsConcluded) {
+  Message none = of_event(1, 1000);
+  header_of(none).source_ids = {"retraction/A/test/A-2/2031-01-01T00:00:00Z",
+                                "state_report/retraction/A/test/A-2/2031-01-01T00:00:00Z"};
+  EXPECT_THAT(after({none}).to_publish(), IsEmpty());
+  EXPECT_TRUE(after({none, of_event(2, 20)}).is_latest(kKey.first, kKey.second, 2));
+}
+
 TEST(LatestOutputs, WhatIsConcludedAnewAfterARetractionIsTheLatestThoughItSpeaksOfAnEarlierTest) {
   Message anew = of_event(3, 10);
   header_of(anew).source_ids = {"retraction/A/test/A-2/2031-01-01T00:00:00Z"};

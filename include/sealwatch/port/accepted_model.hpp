@@ -52,6 +52,9 @@ class AcceptedModel {
       return !event.header.event_time_known || event.header.event_time_ns >= time_ns;
     };
     if (in_force_ && of_what_was_there(in_force_->discrepancy_time_ns)) end(conclusion);
+    for (const ModelAcceptance& one : waiting_)  // fetched back, with what ended it, before the discrepancy
+      if (of_what_was_there(one.discrepancy_time_ns)) conclusion.consumed.push_back(one.header.message_id);
+    std::erase_if(waiting_, [&](const auto& one) { return of_what_was_there(one.discrepancy_time_ns); });
     for (const ModelDiscrepancy& one : known_)
       if (of_what_was_there(one.header.event_time_ns)) conclusion.consumed.push_back(one.header.message_id);
     std::erase_if(known_, [&](const auto& one) { return of_what_was_there(one.header.event_time_ns); });

@@ -125,6 +125,18 @@ TEST(AcceptedModel, EndsWithTheActuatorThatWasAnalysed) {
   EXPECT_EQ(reports[2].accepted_discrepancy, "");
 }
 
+/// In a journal that is made again, what people said comes before the discrepancies (message/act_record.hpp).
+TEST(AcceptedModel, ThatAReplacementEndedStaysSoWhereBothComeFirst) {
+  for (const int month : {2, 6}) {
+    std::vector<Message> messages;
+    messages.emplace_back(acceptance("D1", 1));
+    messages.emplace_back(replacement(month));
+    messages.emplace_back(discrepancy("D1"));
+    add_tests(messages, 7, 7);
+    EXPECT_EQ(reports_of(messages)[0].accepted_discrepancy, month == 2 ? "D1" : "");
+  }
+}
+
 TEST(AcceptedModel, KilledAnywhereItEndsTheSame) {
   std::vector<Message> messages;
   add_tests(messages, 0, 3);

@@ -162,7 +162,9 @@ bool Admission::note(const Message& message, bool concluded) {
   note_asset(asset_id);
   const std::optional<std::int64_t> time_ns = time_of_test(message);
   const std::string& pst_id = header_of(message).pst_id;
-  bool is_news = !pst_id.empty() && !knows_test(asset_id, pst_id);
+  const auto known = tests_.find(asset_id);
+  const bool was_concluded = known != tests_.end() && known->second.knows(pst_id);
+  bool is_news = !pst_id.empty() && (!knows_test(asset_id, pst_id) || (concluded && !was_concluded));
   auto& on_their_way = on_their_way_[asset_id];
   if (concluded)
     on_their_way.erase(pst_id);
@@ -220,6 +222,21 @@ void Admission::note_test(const Message& message, UtcTime time) {
 
 void Admission::note_named_tests(const MaintenanceEvent& event) {
   if (event.tests_known) (void)tests_[event.asset_id].name(event.header.message_id, event.test_ids);
+}
+
+/// A neighbour that answers it knows what it means, and by the answer it is applied here already.
+bool Admission::may_be_given(const std::string& asset_id, const Retraction& retraction) const {
+  const auto acts = acts_.find(asset_id);
+  const bool is_answered = acts != acts_.end() && acts->second.retractions.contains(retraction.id);
+  return is_answered || !means_nothing(asset_id, retraction);
+}
+
+bool Admission::knows_all_of(const std::string& asset_id, const Retraction& retraction) const {
+  if (!retraction.withdrawn_id.empty()) return may_be_given(asset_id, retraction);
+  static const RetractedTests none;
+  const auto tests = tests_.find(asset_id);
+  const RetractedTests& known = tests == tests_.end() ? none : tests->second;
+  return std::ranges::all_of(known.meant_by(retraction), [&](const std::string& test) { return known.knows(test); });
 }
 
 std::vector<std::string> Admission::tests_meant(const std::string& asset_id, const Retraction& retraction) const {

@@ -61,7 +61,7 @@ class Admission {
   explicit Admission(std::map<std::string, UtcTime> commissioned = {}, ConfiguredAssets assets = {});
   /// Takes note of its asset, of when a test was made, and of retractions. Of what others say of tests, from which
   /// nothing may be concluded, `concluded` is false: of them only the newest date is known, until a retraction. Whether it
-  /// is of a test, or tells of an act, that was not known before.
+  /// is of a test, or tells of an act, that was not known before, or is the first that is concluded of the test.
   bool note(const Message& message, bool concluded = true);
   /// Takes note of an asset alone.
   void note_asset(const std::string& asset_id);
@@ -80,6 +80,12 @@ class Admission {
   [[nodiscard]] std::optional<std::string> refusal_of_idle(const Message& message) const;
   /// The tests that a retraction of many means: those that are known, and those on their way.
   [[nodiscard]] std::vector<std::string> tests_meant(const std::string& asset_id, const Retraction& retraction) const;
+  /// Takes note of the tests that a retraction of many names.
+  void note_named_tests(const MaintenanceEvent& event);
+  /// Whether a retraction that is kept until what it means is known changes something, or has changed something.
+  [[nodiscard]] bool may_be_given(const std::string& asset_id, const Retraction& retraction) const;
+  /// Whether all that a retraction means is here: concluded, not only on its way.
+  [[nodiscard]] bool knows_all_of(const std::string& asset_id, const Retraction& retraction) const;
   /// Whether an act is to wait until what it means is known.
   [[nodiscard]] bool is_ahead(const Message& message) const;
   /// Whether a retraction of the asset changes nothing. A test that others conclude from is known, with its date, before
@@ -98,7 +104,6 @@ class Admission {
  private:
   void note_name(const std::string& asset_id);
   void note_test(const Message& message, UtcTime time);
-  void note_named_tests(const MaintenanceEvent& event);
   [[nodiscard]] bool knows_test(const std::string& asset_id, const std::string& pst_id) const;
   [[nodiscard]] std::optional<std::string> refusal_of_test(const RawSamples& raw) const;
   [[nodiscard]] std::optional<std::string> refusal_of_time(const Message& message, UtcTime now) const;

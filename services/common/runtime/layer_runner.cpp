@@ -150,6 +150,7 @@ Status LayerRunner::step(std::chrono::milliseconds timeout) {
     if (Status status = try_again_what_was_asked(); !status) return status;
     if (Status status = let_time_pass(); !status) return status;
     if (Status status = note_acts(); !status) return status;
+    look_whether_assets_are_quiet();
     if (resends_.empty())
       if (Status status = publish_latest(); !status) return status;
     if (Status status = drop_old_samples(); !status) return status;
@@ -192,8 +193,7 @@ Status LayerRunner::take_ready() {
     holds_memory_ = true;
   }
   if (Status status = give_acts_ahead(); !status) return status;
-  for (; !ready_.empty(); ready_.pop_front())
-    if (Status status = take(std::move(ready_.front())); !status) return status;
+  if (Status status = take_all_in_turn(); !status) return status;
   if (Status status = let_lanes_work(); !status) return status;
   if (!taken_.empty() || !results_.empty() || !uncommitted_.empty() || !acts_.empty() || !records_.empty() ||
       !changed_refused_tests_.empty())
@@ -279,7 +279,10 @@ Status LayerRunner::take(Message message, const ActRecord* record) {
   }
   header_of(message).message_id = **id;
   if (topic_of(message) == Topic::act_record) return take_record(std::move(message), stream);
-  if (record == nullptr) name_tests(message);
+  if (record == nullptr)
+    name_tests(message);
+  else if (const auto* event = std::get_if<MaintenanceEvent>(&message))
+    admission_.note_named_tests(*event);
   auto refused = refusal_of(message, record);
   if (refused) {
     note_error(std::string(name_of(topic_of(message))) + " refused: " + *refused);

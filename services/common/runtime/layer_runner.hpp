@@ -138,6 +138,7 @@ class LayerRunner {
   [[nodiscard]] Status in_batch(const std::function<Status()>& work, Survives survives = Survives::kills);
   [[nodiscard]] Survives batch_survives() const;
   [[nodiscard]] Status take_ready();
+  [[nodiscard]] Status take_all_in_turn();
   /// Also of what is taken and not yet committed; none where it is not known.
   [[nodiscard]] Result<std::optional<std::string>> asset_of_input(const std::string& message_id);
   [[nodiscard]] Status name_as_kept(Message& message);
@@ -263,6 +264,11 @@ class LayerRunner {
   void look_whether_acts_are_here();
   void note_standing(const Message& output);
   [[nodiscard]] bool is_of_later_advice(const Message& act) const;
+  /// Whether an act that is fetched back, or was ahead, is given to the layer now.
+  [[nodiscard]] bool is_its_turn(const Message& act) const;
+  /// Nothing more is known to come about the asset.
+  [[nodiscard]] bool is_quiet(const std::string& asset_id) const;
+  void look_whether_assets_are_quiet();
 
   /// What another service tells of its record of acts.
   void hear_of_acts(const ServiceStatus& status);
@@ -326,23 +332,24 @@ class LayerRunner {
   std::map<std::string, std::shared_ptr<const Message>> awaiting_;        ///< acts that wait for a second person, by id
   std::map<std::string, InputState> no_longer_awaiting_;  ///< ids of those whose wait is over, of this batch
   std::map<std::string, std::size_t> acts_ahead_;         ///< acts that wait for what they mean, by asset
-  std::set<std::string> heard_of_;                        ///< of those assets, the ones of which something new is known
-  std::size_t acts_on_unknown_assets_ = 0;                ///< recorded while the alarm of them stands
-  std::vector<OperatorAct> acts_;                         ///< of the running batch
-  std::vector<Message> records_;                          ///< of the running batch: own act_records
-  bool waits_for_acts_ = false;                           ///< the journal is new, and acts come before all else
-  std::vector<Message> said_meanwhile_;                   ///< by people, to this service itself
-  std::map<std::string, std::string> standing_;           ///< advisory_id of the advice that stands, by asset
-  AuditAnchor last_act_;                                  ///< of the own record
-  std::map<std::string, AuditAnchor> heard_acts_;         ///< the last of each other service, as kept
-  std::vector<AuditAnchor> new_anchors_;                  ///< not yet kept
-  bool is_new_ = false;                                   ///< the journal, and not yet compared with others' records
-  std::set<std::string> first_heard_;                     ///< services that were heard since the start
-  std::set<std::string> compared_;                        ///< whose records the journal was compared with before
-  std::string has_older_acts_;                            ///< of them, one whose record began before the own journal
-  std::string has_unrecorded_acts_;  ///< likewise, and of an earlier version that keeps no act_record
-  std::string has_read_more_;        ///< one that read samples of a journal before the own one
-  std::vector<LaneResult> results_;  ///< not yet in the journal
+  std::set<std::string> awaits_quiet_;             ///< of those assets, the ones with acts that were fetched back
+  std::set<std::string> heard_of_;                 ///< of those assets, the ones of which something new is known
+  std::size_t acts_on_unknown_assets_ = 0;         ///< recorded while the alarm of them stands
+  std::vector<OperatorAct> acts_;                  ///< of the running batch
+  std::vector<Message> records_;                   ///< of the running batch: own act_records
+  bool waits_for_acts_ = false;                    ///< the journal is new, and acts come before all else
+  std::vector<Message> said_meanwhile_;            ///< by people, to this service itself
+  std::map<std::string, std::string> standing_;    ///< advisory_id of the advice that stands, by asset
+  AuditAnchor last_act_;                           ///< of the own record
+  std::map<std::string, AuditAnchor> heard_acts_;  ///< the last of each other service, as kept
+  std::vector<AuditAnchor> new_anchors_;           ///< not yet kept
+  bool is_new_ = false;                            ///< the journal, and not yet compared with others' records
+  std::set<std::string> first_heard_;              ///< services that were heard since the start
+  std::set<std::string> compared_;                 ///< whose records the journal was compared with before
+  std::string has_older_acts_;                     ///< of them, one whose record began before the own journal
+  std::string has_unrecorded_acts_;                ///< likewise, and of an earlier version that keeps no act_record
+  std::string has_read_more_;                      ///< one that read samples of a journal before the own one
+  std::vector<LaneResult> results_;                ///< not yet in the journal
   Outbox outbox_;
   std::map<Key, std::uint64_t> committed_;    ///< positions in the journal
   std::map<Key, std::uint64_t> uncommitted_;  ///< positions of the running batch

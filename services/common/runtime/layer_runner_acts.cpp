@@ -49,9 +49,9 @@ std::string what_people_said(const std::string& other) {
          " has a record: retract, accept and acknowledge again what sealwatch audit shows to be in force";
 }
 
-/// What `other` has read, and nobody sends again.
+/// Nobody sends them again.
 std::string samples_of_earlier_tests(const std::string& other) {
-  return "the samples of earlier tests, which " + other + " has read: restore a backup";
+  return "the samples of earlier tests, of which " + other + " has a record: restore a backup";
 }
 
 constexpr const char* kSaidToDesk =
@@ -79,6 +79,7 @@ Status LayerRunner::restore_awaiting() {
   auto ahead = journal_.acts_ahead();
   if (!ahead) return fail(ahead.error());
   acts_ahead_ = std::move(*ahead);
+  for (const auto& [asset_id, count] : acts_ahead_) awaits_quiet_.insert(asset_id);
   return {};
 }
 
@@ -139,8 +140,9 @@ bool LayerRunner::may_be_fetched_later(const Message& message) const {
 InputState LayerRunner::note_act(const Message& message, const std::optional<std::string>& refused, InputState state,
                                  const ActRecord* record) {
   const bool waits = !refused && waits_for_second(message);
-  const bool is_later_advice = record != nullptr && is_of_later_advice(message);
-  const bool is_ahead = !refused && !waits && (admission_.is_ahead(message) || is_later_advice);
+  const bool is_fetched_early = record != nullptr && !is_its_turn(message);
+  const bool is_ahead = !refused && !waits && (admission_.is_ahead(message) || is_fetched_early);
+  if (is_ahead && is_fetched_early) awaits_quiet_.insert(asset_of(message));
   std::string outcome = refused ? *refused : waits ? "waits for a second person" : is_ahead ? kAhead : kTaken;
   if (record != nullptr) outcome += ", fetched back from " + visible(record->header.producer);
   if (auto act = act_of(message, clock_.now(), outcome)) acts_.push_back(std::move(*act));
@@ -161,10 +163,14 @@ Status LayerRunner::give_acts_ahead(const std::string& asset_id) {
   if (!ids) return fail(ids.error());
   for (const std::string& act_id : *ids) {
     const auto retraction = retraction_of(asset_id, act_id);
-    if (retraction && admission_.means_nothing(asset_id, *retraction)) continue;
+    if (retraction && !admission_.may_be_given(asset_id, *retraction)) continue;
     auto act = journal_.input(act_id);
     if (!act) return fail(act.error());
-    if (!*act || is_of_later_advice(**act)) continue;
+    if (!*act) continue;
+    if (!is_its_turn(**act)) {
+      awaits_quiet_.insert(asset_id);
+      continue;
+    }
     if (auto taken = act_of(**act, clock_.now(), kTaken)) acts_.push_back(std::move(*taken));
     keep_record(**act, false);
     no_longer_awaiting_[act_id] = InputState::open;
@@ -292,7 +298,8 @@ bool LayerRunner::all_heard() const {
 /// What a new journal lacks that its neighbours have no record of; nothing where all of it can be had back.
 std::optional<std::string> LayerRunner::lost_for_ever() const {
   std::vector<std::string> lost;
-  if (!has_read_more_.empty()) lost.push_back(samples_of_earlier_tests(has_read_more_));
+  const std::string& knows_of_tests = has_read_more_.empty() ? has_older_acts_ : has_read_more_;
+  if (reads_samples() && !knows_of_tests.empty()) lost.push_back(samples_of_earlier_tests(knows_of_tests));
   if (keeps_acts() && !has_unrecorded_acts_.empty()) lost.push_back(what_people_said(has_unrecorded_acts_));
   if (desk_ && !has_older_acts_.empty()) lost.emplace_back(kSaidToDesk);
   if (lost.empty()) return std::nullopt;

@@ -7,11 +7,12 @@
 //                        whatever is known by then
 //   acts of others       (acknowledgements, accepted models) are kept as well, for who listens to them
 //   order                where the journal is new, acts come first: a replacement parts a history, which it does not do
-//                        as well once later tests were concluded from
-//   an acknowledgement   waits until the advice is given again that it means
+//                        as well once later tests were concluded from. A retraction then waits for the tests that it
+//                        means, and an acknowledgement for its advice, so that the answer is the last word again
 //
 // Not kept: what people say to the desk of alarms (layer_runner_desk.cpp).
 #include <algorithm>
+#include <deque>
 #include <iterator>
 #include <utility>
 
@@ -190,6 +191,54 @@ void LayerRunner::note_standing(const Message& output) {
   if (advisory == nullptr || advisory->state == AdvisoryState::superseded) return;
   standing_[advisory->asset_id] = advisory->advisory_id;
   heard_of_.insert(advisory->asset_id);
+}
+
+/// A retraction stands behind the tests that it means: the answer to it then is the last word, as it was. One that may
+/// never come, set aside or refused here, keeps it no longer than there is something to wait for.
+bool LayerRunner::is_its_turn(const Message& act) const {
+  const std::string asset_id = asset_of(act);
+  if (is_of_later_advice(act)) return false;
+  const auto retraction = retraction_of(asset_id, header_of(act).message_id);
+  if (!retraction || admission_.knows_all_of(asset_id, *retraction)) return true;
+  return is_quiet(asset_id) && admission_.may_be_given(asset_id, *retraction);
+}
+
+bool LayerRunner::is_quiet(const std::string& asset_id) const {
+  const bool is_told_of_all =
+      all_heard() || std::chrono::steady_clock::now() - started_ >= options_.longest_without_acts;
+  return is_told_of_all && !waits_for_acts_ && ready_.empty() && !reader_->is_behind(asset_id) &&
+         !lanes_.is_receiving(asset_id);
+}
+
+/// Of an asset with acts that were fetched back, one message after another is concluded from: an act is given behind the
+/// last test that it means, and before those that came after it.
+Status LayerRunner::take_all_in_turn() {
+  std::deque<Message> later;
+  std::set<std::string> waiting;
+  for (; !ready_.empty(); ready_.pop_front()) {
+    Message& next = ready_.front();
+    const std::string asset_id = asset_of(next);
+    const bool waits =
+        waiting.contains(asset_id) || (awaits_quiet_.contains(asset_id) && lanes_.is_receiving(asset_id));
+    if (waits) {
+      waiting.insert(asset_id);
+      later.push_back(std::move(next));
+    } else if (Status taken = take(std::move(next)); !taken) {
+      return taken;
+    }
+  }
+  ready_ = std::move(later);
+  return {};
+}
+
+/// About once a second.
+void LayerRunner::look_whether_assets_are_quiet() {
+  std::erase_if(awaits_quiet_, [this](const std::string& asset_id) {
+    if (!acts_ahead_.contains(asset_id)) return true;
+    if (!is_quiet(asset_id)) return false;
+    heard_of_.insert(asset_id);
+    return true;
+  });
 }
 
 /// An acknowledgement of other advice than what stands changes nothing, and is said to have changed nothing.

@@ -37,7 +37,9 @@ void LayerRunner::sort_in(BusItem item) {
 }
 
 void LayerRunner::sort_in(Message message) {
-  if (!contains(inputs_, topic_of(message)) || waits_for_acts(message)) return;
+  const bool is_own =
+      header_of(message).writer_id == journal_.writer_id();  // who writes a topic and reads it hears itself
+  if (is_own || !contains(inputs_, topic_of(message)) || waits_for_acts(message)) return;
   note_strangers(strangers_.hear(message, std::chrono::steady_clock::now().time_since_epoch()));
   // Raw samples that are numbered are refused in their turn: their stream goes on.
   const bool in_its_turn = topic_of(message) == Topic::raw_samples && is_numbered(message);

@@ -318,6 +318,21 @@ check_revocation() {
   grep -q '"no heartbeat"' "$scratch/revoked.saw" || fail "the revoked one did not even look" "$scratch/revoked.errors"
 }
 
+# A service that lost its journal has the acts back from its neighbours, and needs nobody's right to write them.
+check_lost_journal() {
+  stop_services
+  rm "$scratch/state/state_detection.db"*
+  start_services
+  local attempt
+  for ((attempt = 0; attempt < 200; ++attempt)); do
+    "$bin/sealwatch" audit --config "$config" --state "$scratch/state" >"$scratch/audit" 2>&1 || true
+    ! grep -q 'state_detection.* actuator_replaced .*fetched back from' "$scratch/audit" || break
+    sleep 0.1
+  done
+  grep -q 'state_detection.* tests_retracted .*fetched back from' "$scratch/audit" || fail "a retraction is not fetched back" "$scratch/audit"
+  grep -q 'state_detection.* actuator_replaced .*fetched back from' "$scratch/audit" || fail "a replacement is not fetched back" "$scratch/audit"
+}
+
 "$maker" "$ours" --tag "$tag" >"$scratch/said" 2>&1 || fail "make_identities.sh failed" "$scratch/said"
 "$maker" "$rogue" --tag "$tag" >"$scratch/said" 2>&1 || fail "make_identities.sh failed" "$scratch/said"
 check_usage
@@ -332,6 +347,7 @@ check_lenient
 check_alarm
 check_acts
 check_expiry
+check_lost_journal
 check_revocation
 stop_services
 echo "secured: one test went through, and strangers of every kind saw and wrote nothing"

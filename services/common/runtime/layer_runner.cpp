@@ -192,6 +192,7 @@ Status LayerRunner::take_ready() {
     last_work_ = steady_clock::now();
     holds_memory_ = true;
   }
+  if (Status status = release_records(); !status) return status;
   if (Status status = give_acts_ahead(); !status) return status;
   if (Status status = take_all_in_turn(); !status) return status;
   if (Status status = let_lanes_work(); !status) return status;

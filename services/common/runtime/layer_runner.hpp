@@ -67,6 +67,8 @@ struct RunnerOptions {
   /// Where the journal is new, nothing that others concluded is taken until what people said is fetched back, but for no
   /// longer than this: a service that never runs tells nothing.
   std::chrono::milliseconds longest_without_acts{10'000};
+  /// A neighbour's record of an act waits so long for the act itself, which reaches some services sooner than others.
+  std::chrono::milliseconds records_wait{3000};
   /// Nor while the bus is not emptied, but for no longer than this: what then still waits is a flood's, as a bus gives
   /// each sender its turn.
   std::chrono::milliseconds longest_wait{5000};
@@ -259,6 +261,10 @@ class LayerRunner {
   [[nodiscard]] Status name_tests_known(MaintenanceEvent& event, UtcTime at);
   /// Of a neighbour: the act in it is taken where it is not known here.
   [[nodiscard]] Status take_record(Message message, const StreamPosition& stream);
+  void put_in_line(Message message);
+  /// Puts those into line whose act has come, or does not come.
+  [[nodiscard]] Status release_records();
+  [[nodiscard]] Result<bool> waits_for_its_act(const Message& record);
   /// Whether it is not taken now: it waits, or comes again.
   [[nodiscard]] bool waits_for_acts(const Message& message);
   void look_whether_acts_are_here();
@@ -332,12 +338,13 @@ class LayerRunner {
   std::map<std::string, std::shared_ptr<const Message>> awaiting_;        ///< acts that wait for a second person, by id
   std::map<std::string, InputState> no_longer_awaiting_;  ///< ids of those whose wait is over, of this batch
   std::map<std::string, std::size_t> acts_ahead_;         ///< acts that wait for what they mean, by asset
-  std::set<std::string> awaits_quiet_;             ///< of those assets, the ones with acts that were fetched back
-  std::set<std::string> heard_of_;                 ///< of those assets, the ones of which something new is known
-  std::size_t acts_on_unknown_assets_ = 0;         ///< recorded while the alarm of them stands
-  std::vector<OperatorAct> acts_;                  ///< of the running batch
-  std::vector<Message> records_;                   ///< of the running batch: own act_records
-  bool waits_for_acts_ = false;                    ///< the journal is new, and acts come before all else
+  std::set<std::string> awaits_quiet_;      ///< of those assets, the ones with acts that were fetched back
+  std::set<std::string> heard_of_;          ///< of those assets, the ones of which something new is known
+  std::size_t acts_on_unknown_assets_ = 0;  ///< recorded while the alarm of them stands
+  std::vector<OperatorAct> acts_;           ///< of the running batch
+  std::vector<Message> records_;            ///< of the running batch: own act_records
+  bool waits_for_acts_ = false;             ///< the journal is new, and acts come before all else
+  std::deque<std::pair<Message, std::chrono::steady_clock::time_point>> told_records_;  ///< not yet in line, since when
   std::vector<Message> said_meanwhile_;            ///< by people, to this service itself
   std::map<std::string, std::string> standing_;    ///< advisory_id of the advice that stands, by asset
   AuditAnchor last_act_;                           ///< of the own record

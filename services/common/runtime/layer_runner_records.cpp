@@ -164,6 +164,36 @@ Status LayerRunner::take_record(Message message, const StreamPosition& stream) {
   return take(without_stamps(*act), &record);
 }
 
+void LayerRunner::put_in_line(Message message) {
+  if (topic_of(message) == Topic::act_record)
+    told_records_.emplace_back(std::move(message), std::chrono::steady_clock::now());
+  else
+    ready_.push_back(std::move(message));
+}
+
+/// Its place in the stream is not kept until then: after a kill it is read again.
+Status LayerRunner::release_records() {
+  for (; !told_records_.empty(); told_records_.pop_front()) {
+    auto& [record, since] = told_records_.front();
+    const bool has_waited = std::chrono::steady_clock::now() - since >= options_.records_wait;
+    if (!waits_for_acts_ && !has_waited) {
+      const auto waits = waits_for_its_act(record);
+      if (!waits) return fail(waits.error());
+      if (*waits) return {};
+    }
+    ready_.push_back(std::move(record));
+  }
+  return {};
+}
+
+Result<bool> LayerRunner::waits_for_its_act(const Message& record) {
+  const auto act = act_in(std::get<ActRecord>(record));
+  if (!act || !is_listened_to(*act)) return false;
+  const auto known = journal_.has_input(header_of(*act).message_id);
+  if (!known) return fail(known.error());
+  return !*known;
+}
+
 /// Who said "all since a date" and is still there says it again to whoever comes: taken now, it would mean what is known
 /// here. Of what services number nothing is kept: they send it again.
 bool LayerRunner::waits_for_acts(const Message& message) {
@@ -177,7 +207,8 @@ bool LayerRunner::waits_for_acts(const Message& message) {
 
 void LayerRunner::look_whether_acts_are_here() {
   if (!waits_for_acts_) return;
-  const bool are_here = all_heard() && !reader_->is_behind_on(name_of(Topic::act_record)) && ready_.empty();
+  const bool are_here =
+      all_heard() && !reader_->is_behind_on(name_of(Topic::act_record)) && ready_.empty() && told_records_.empty();
   const bool is_over = std::chrono::steady_clock::now() - started_ >= options_.longest_without_acts;
   if (!are_here && !is_over) return;
   waits_for_acts_ = false;
@@ -206,8 +237,8 @@ bool LayerRunner::is_its_turn(const Message& act) const {
 bool LayerRunner::is_quiet(const std::string& asset_id) const {
   const bool is_told_of_all =
       all_heard() || std::chrono::steady_clock::now() - started_ >= options_.longest_without_acts;
-  return is_told_of_all && !waits_for_acts_ && ready_.empty() && !reader_->is_behind(asset_id) &&
-         !lanes_.is_receiving(asset_id);
+  return is_told_of_all && !waits_for_acts_ && ready_.empty() && told_records_.empty() &&
+         !reader_->is_behind(asset_id) && !lanes_.is_receiving(asset_id);
 }
 
 /// Of an asset with acts that were fetched back, one message after another is concluded from: an act is given behind the

@@ -49,7 +49,7 @@ void LayerRunner::sort_in(Message message) {
     return;
   }
   note_reused_number(message);
-  for (Message& next : reader_->accept(std::move(message))) ready_.push_back(std::move(next));
+  for (Message& next : reader_->accept(std::move(message))) put_in_line(std::move(next));
 }
 
 /// A replacement that came under another system's id is kept under one of ours, and by earlier versions as it came.
@@ -95,7 +95,7 @@ void LayerRunner::sort_in(const ServiceStatus& status) {
   hear_of_own_outputs(status);
   if (desk_) desk_->hear(status, std::chrono::steady_clock::now().time_since_epoch(), clock_.now());
   for (Message& next : reader_->note_start(status.writer_id, status.started_ns, steady_seconds()))
-    ready_.push_back(std::move(next));
+    put_in_line(std::move(next));
   for (const StreamPosition& written : status.written) {
     const auto topic = value_of<Topic>(written.topic);
     if (!topic || !contains(inputs_, *topic)) continue;
@@ -106,10 +106,12 @@ void LayerRunner::sort_in(const ServiceStatus& status) {
 /// What was received of the stream and not committed is read again as well: its position must not count.
 void LayerRunner::start_anew(const Key& stream) {
   committed_.erase(stream);
-  std::erase_if(ready_, [&](const Message& message) {
+  const auto is_of_it = [&](const Message& message) {
     return is_numbered(message) && header_of(message).writer_id == stream.second &&
            name_of(topic_of(message)) == stream.first;
-  });
+  };
+  std::erase_if(ready_, is_of_it);
+  std::erase_if(told_records_, [&](const auto& one) { return is_of_it(one.first); });
   log_event(LogLevel::warn, "writer was set back, reading its stream again from the start",
             {{"writer", stream.second}, {"topic", stream.first}});
 }

@@ -102,6 +102,7 @@ inline RunnerOptions fast_options() {
   RunnerOptions options;
   options.heartbeat.interval = std::chrono::milliseconds(5);
   options.heartbeat.shortest = std::chrono::milliseconds(1);
+  options.records_wait = std::chrono::milliseconds(30);
   options.settling = std::chrono::milliseconds(0);
   options.batch_pause = std::chrono::milliseconds(0);
   options.batch_time = std::chrono::seconds(5);  // on a busy machine too, a step concludes from what it took

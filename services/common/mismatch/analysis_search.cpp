@@ -53,7 +53,7 @@ Status Analysis::look_for_what_is_missing() {
   std::optional<Trial> from;
   if (own_ && !own_->naming.best.effects.empty()) from = found_in_common(*own_);
   if (own_) tell("looking again, with one value for all tests", 0.5);
-  if (!from && options.maximum_laws > 0 && is_far_off(*baseline_)) {
+  if (!from && options.maximum_laws > 0 && excess(*baseline_) > kGross) {
     tell("setting out from the recorded states", 0.2);
     HeldStart held = start_from_held(*baseline_, prepared(fit_), options);
     from = std::move(held.trial);

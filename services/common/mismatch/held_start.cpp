@@ -13,17 +13,19 @@
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr double kFarOff = 0.1;        // of the spread of a channel
-constexpr double kNoise = 1.1;         // times the noise's variance: its own size is known to a tenth
-constexpr double kTimeShare = 0.25;    // of the time limit: a start, and no more
-constexpr double kHeldSamples = 10.0;  // within so many distances between samples: noise is averaged, little drifts
+constexpr double kFarOff = 0.1;      // of the spread of a channel
+constexpr double kNoise = 1.1;       // times the noise's variance: its own size is known to a tenth
+constexpr double kTimeShare = 0.25;  // of the time limit: a start, and no more
+// Within so many distances between samples: what adds up slowly shows; and, where that is still far off, noise is averaged
+// and little drifts.
+constexpr double kLoosely = 100.0, kTightly = 10.0;
 
-double held_within_s(const Data& data) {
-  double distance_s = 0.0;
+double distance_s(const Data& data) {
+  double longest_s = 0.0;
   for (const TimeSeries& samples : data.samples)
-    distance_s = std::max(
-        distance_s, (samples.time_s.back() - samples.time_s.front()) / static_cast<double>(samples.time_s.size() - 1));
-  return kHeldSamples * distance_s;
+    longest_s = std::max(
+        longest_s, (samples.time_s.back() - samples.time_s.front()) / static_cast<double>(samples.time_s.size() - 1));
+  return longest_s;
 }
 
 // Sensors and the clock decide which course the simulation is held to.
@@ -47,17 +49,16 @@ bool add_best(Trial& found, const Data& held, const ExplainOptions& options) {
   return true;
 }
 
-// What the simulations are held to, and until when.
-Data held_data(const Data& data, const Deadline& until) {
+// What the simulations are held to, within so many samples, and until when.
+Data held_data(const Data& data, double samples, const Deadline& until) {
   Data held = data;
-  held.held_within_s = held_within_s(data);
+  held.held_within_s = samples * distance_s(data);
   held.weight.clear();  // an input's course between samples adds up in free runs alone
   held.deadline = &until;
   return held;
 }
 
-}  // namespace
-
+// Whether a channel is missed by more than a tenth of its own course, far beyond its noise.
 bool is_far_off(const FittedModel& model) {
   struct Sums {
     double missed = 0.0, spread = 0.0, noise = 0.0;
@@ -80,20 +81,36 @@ bool is_far_off(const FittedModel& model) {
   });
 }
 
+// Fitted to the recordings while it is held, as loosely as leaves it near; nothing where even held tightly it comes no
+// nearer: too little of its state is measured. What the free run's fit bent its parameters to is no start to judge by.
+struct Held {
+  Data data;
+  FittedModel model;
+};
+std::optional<Held> hold(const FittedModel& baseline, const Data& data, const Deadline& until, int threads) {
+  for (const double samples : {kLoosely, kTightly}) {
+    Data held = held_data(data, samples, until);
+    Result<FittedModel> model = fit_model(baseline.asset, held, &baseline, threads);
+    if (!model) continue;
+    const bool nearer = share_explained(misfit_of(baseline), misfit_of(*model)) >= kExplainedAtLeast;
+    if (!is_far_off(*model) || (samples == kTightly && nearer)) return Held{std::move(held), std::move(*model)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 HeldStart start_from_held(const FittedModel& baseline, const Data& data, const ExplainOptions& options) {
   HeldStart start;
   const double allowed_s = std::min(kTimeShare * options.time_limit_s,
                                     data.deadline == nullptr ? options.time_limit_s : data.deadline->left_s());
   Deadline until(options.cancel);
   until.set_in(allowed_s);
-  const Data held = held_data(data, until);
-  Result<FittedModel> model = fit_model(baseline.asset, held, &baseline, options.threads, 0);
-  if (!model || is_far_off(*model)) return start;  // too little of its state is measured
-  model = continue_fit(*model, held, options.threads, kSearchIterations);
-  if (!model) return start;
-  Trial found{{}, std::make_shared<const FittedModel>(std::move(*model))};
+  std::optional<Held> held = hold(baseline, data, until, options.threads);
+  if (!held) return start;
+  Trial found{{}, std::make_shared<const FittedModel>(std::move(held->model))};
   while (excess(*found.model) > kNoise && static_cast<int>(found.effects.size()) < options.maximum_laws &&
-         add_best(found, held, options)) {
+         add_best(found, held->data, options)) {
   }
   start.was_cut = until.was_met();
   if (found.effects.empty()) return start;

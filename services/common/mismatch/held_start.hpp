@@ -1,4 +1,4 @@
-// Where a search sets out in a simulation that is far off. From values that are off by much, a free run stands still or
+// Where a search sets out in a gross misfit. From values that are off by much, a free run stands still or
 // drifts: what its linear model says of absent laws is then of a course that the plant never took. Held to its recorded
 // states (model/held_to_recording.hpp) the simulation takes the plant's course, its parameters and laws act nearly in
 // proportion, and the same search comes to what its balances lack. The free run then sets out from there, and decides.
@@ -9,9 +9,6 @@
 #include "services/common/mismatch/naming.hpp"
 
 namespace sealwatch::mismatch {
-
-/// Whether a channel is missed by more than a tenth of its own course, far beyond its noise.
-[[nodiscard]] bool is_far_off(const FittedModel& model);
 
 struct HeldStart {
   std::optional<Trial> trial = {};

@@ -1,0 +1,52 @@
+// Where a search sets out in a gross misfit of the whole actuator: not from what free runs say of absent laws.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "services/common/mismatch/criterion.hpp"
+#include "services/common/mismatch/held_start.hpp"
+#include "services/common/mismatch/ranking.hpp"
+#include "services/common/runtime/asset_file.hpp"
+#include "tests/unit/mismatch/simulated_test.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+/// A pump that slips by its speed, at 14 times a significant size, beside a small leak of a chamber, from another seal.
+AssetConfig worn(AssetConfig asset) {
+  asset.parameters.at("R_CL").value = 1.2e13;
+  asset = with_law(std::move(asset), **find_law("speed_dependent_pump_slip", {"k_d"}), "pump", std::vector{5.6e-9});
+  return with_law(std::move(asset), **find_law("external_leakage", {"G_t"}), "chamber_a", std::vector{1.5e-11});
+}
+
+TEST(GrossStart, HeldToItsStatesASimulationShowsTheLawThatItsFreeRunHides) {
+  const AssetConfig asset = load_asset(SEALWATCH_SOURCE_DIR "/config/assets/xt03-mv2.yaml").value();
+  Data data;
+  for (const double load : {0.7, 1.2}) {
+    AssetConfig loaded = worn(asset);
+    loaded.parameters.at("phi").value *= load;
+    data.names.push_back(number(load));
+    data.samples.push_back(simulated(loaded, standard_pst(loaded, 50.0), 1.0));
+  }
+  const auto baseline = fit_model(asset, data, nullptr, 2);
+  ASSERT_TRUE(baseline) << baseline.error().describe();
+  EXPECT_GT(excess(*baseline), 100.0);
+  const auto slips = [](const Effect& effect) { return effect.law->id == "speed_dependent_pump_slip"; };
+  const auto asked = screen(*baseline, data, {.threads = 2});
+  ASSERT_TRUE(asked);
+  const std::vector<LawStart> by_free_run = ranked_laws(*asked, 1);
+  ASSERT_FALSE(by_free_run.empty());
+  EXPECT_FALSE(slips(by_free_run.front().effect));
+  ExplainOptions options;
+  options.threads = 2;
+  options.time_limit_s = 600.0;
+  const HeldStart start = start_from_held(*baseline, data, options);
+  ASSERT_TRUE(start.trial);
+  ASSERT_EQ(start.trial->effects.size(), 2U);
+  EXPECT_TRUE(slips(start.trial->effects[0]));
+  EXPECT_EQ(start.trial->effects[1].law->id, "external_leakage");
+  EXPECT_LT(excess(*start.trial->model), 1.2);
+}
+
+}  // namespace
+}  // namespace sealwatch::mismatch

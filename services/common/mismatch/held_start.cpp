@@ -83,17 +83,23 @@ bool is_far_off(const FittedModel& model) {
 
 // Fitted to the recordings while it is held, as loosely as leaves it near; nothing where even held tightly it comes no
 // nearer: too little of its state is measured. What the free run's fit bent its parameters to is no start to judge by.
+// Windows set out from what was measured, and are held loosely by that: only where they are far off, and near at once
+// when they are held tightly.
 struct Held {
   Data data;
   FittedModel model;
 };
 std::optional<Held> hold(const FittedModel& baseline, const Data& data, const Deadline& until, int threads) {
+  const bool in_windows = !data.groups.empty();
+  if (in_windows && !is_far_off(baseline)) return std::nullopt;
   for (const double samples : {kLoosely, kTightly}) {
+    if (in_windows && samples == kLoosely) continue;
     Data held = held_data(data, samples, until);
-    Result<FittedModel> model = fit_model(baseline.asset, held, &baseline, threads);
+    Result<FittedModel> model = fit_model(baseline.asset, held, &baseline, threads, in_windows ? 0 : kSearchIterations);
     if (!model) continue;
     const bool nearer = share_explained(misfit_of(baseline), misfit_of(*model)) >= kExplainedAtLeast;
-    if (!is_far_off(*model) || (samples == kTightly && nearer)) return Held{std::move(held), std::move(*model)};
+    if (!is_far_off(*model) || (samples == kTightly && nearer && !in_windows))
+      return Held{std::move(held), std::move(*model)};
   }
   return std::nullopt;
 }
@@ -106,9 +112,11 @@ HeldStart start_from_held(const FittedModel& baseline, const Data& data, const E
                                     data.deadline == nullptr ? options.time_limit_s : data.deadline->left_s());
   Deadline until(options.cancel);
   until.set_in(allowed_s);
-  std::optional<Held> held = hold(baseline, data, until, options.threads);
+  const std::optional<Held> held = hold(baseline, data, until, options.threads);
   if (!held) return start;
-  Trial found{{}, std::make_shared<const FittedModel>(std::move(held->model))};
+  Result<FittedModel> model = continue_fit(held->model, held->data, options.threads, kSearchIterations);
+  if (!model) return start;
+  Trial found{{}, std::make_shared<const FittedModel>(std::move(*model))};
   while (excess(*found.model) > kNoise && static_cast<int>(found.effects.size()) < options.maximum_laws &&
          add_best(found, held->data, options)) {
   }

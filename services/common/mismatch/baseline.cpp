@@ -55,11 +55,11 @@ class BaselineFit {
             "the model cannot be simulated at the start values: check the asset's parameters against the recording";
       return fail(std::move(error));
     }
-    if (!windowed() && !time_.deadline().passed()) model = weighed_by_what_is_recorded(std::move(*model));
-    if (!model) return fail(model.error());
     model = of_fewer_windows(std::move(*model));
     if (!model) return fail(model.error());
     if (!time_.deadline().passed()) model = with_tolerances(std::move(*model));
+    if (!windowed() && !time_.deadline().passed()) model = weighed_by_what_is_recorded(std::move(*model));
+    if (!model) return fail(model.error());
     baseline_.model = std::make_shared<const FittedModel>(std::move(*model));
     return std::move(baseline_);
   }

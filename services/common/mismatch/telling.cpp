@@ -116,17 +116,24 @@ std::string found_in_words(const std::vector<FoundEffect>& effects) {
   return text + (effects.size() > 1 ? ". With them " : ". With it ");
 }
 
+constexpr double kNoLarger = 1.05;  // times the noise, whose own size is known no better
+
+// Samples that count less are part of what is reported.
+std::string hidden_by_the_input(const ChannelComparison* worst) {
+  if (worst == nullptr || worst->rms_before < kNoLarger) return {};
+  return " What the input did between samples may account for the misfit of " + in_words(worst->channel) + " (" +
+         number(worst->rms_before) + " times the noise). Record the input faster to see what it hides.";
+}
+
 }  // namespace
 
 std::string summary_of(const Explanation& explanation) {
-  constexpr double kNoLarger = 1.05;  // times the noise, whose own size is known no better
   std::string text;
   const ChannelComparison* worst = worst_channel(explanation.fit);
   if (explanation.verdict == Verdict::consistent) {
-    text =
-        "Simulation and recordings agree within the noise once the free parameters are fitted. No physics is missing "
-        "that these tests could have shown.";
-    return text;
+    return "Simulation and recordings agree within the noise once the free parameters are fitted. No physics is "
+           "missing that these tests could have shown." +
+           hidden_by_the_input(worst);
   }
   if (explanation.verdict == Verdict::mismatch) {
     text = found_in_words(explanation.effects);

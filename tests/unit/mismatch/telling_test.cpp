@@ -82,6 +82,18 @@ TEST(Evidence, OfSeveralLawsIsSaidOfAllTogether) {
   EXPECT_EQ(evidence_of(drag, 2, 12.0, 1.02).find("With the other laws found, quadratic drag at the piston takes"), 0U);
 }
 
+TEST(Summary, SaysWhatTheInputMayHide) {
+  Explanation found;
+  found.verdict = Verdict::consistent;
+  found.fit.channels = {{.channel = "motor_current", .rms_before = 1.6, .weighed_rms_after = 1.0},
+                        {.channel = "pressure_a", .rms_before = 1.02, .weighed_rms_after = 1.0}};
+  EXPECT_NE(summary_of(found).find("may account for the misfit of motor current (1.6 times the noise)"),
+            std::string::npos)
+      << summary_of(found);
+  found.fit.channels.front().rms_before = 1.03;
+  EXPECT_EQ(summary_of(found).find("input"), std::string::npos) << summary_of(found);
+}
+
 TEST(Summary, SaysWhereMuchIsLeft) {
   Explanation found;
   found.verdict = Verdict::mismatch;

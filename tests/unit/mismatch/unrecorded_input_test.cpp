@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "sealwatch/mismatch/explain.hpp"
 #include "services/common/mismatch/telling.hpp"
@@ -62,13 +63,31 @@ TEST(UnrecordedInput, NamesNoLaw) {
   EXPECT_THAT(explanation->notes, testing::Contains(testing::HasSubstr("count less than half")));
 }
 
-UnrecordedInput of_first_test(double swing_V) {
+/// The standard test with a voltage that a controller changes at every sample, linear between two.
+Recording known_course(const AssetConfig& truth, double load) {
+  AssetConfig loaded = truth;
+  loaded.parameters.at("phi").value *= load;
+  TimeSeries samples = standard_pst(loaded, 100.0);
+  std::mt19937 random(20261128);
+  std::normal_distribution<double> restless(0.0, 0.2);
+  for (double& volts : std::ranges::find(samples.channels, "motor_voltage", &Series::name)->values)
+    volts += restless(random);
+  Recording recording;
+  recording.asset_id = truth.asset_id;
+  recording.file = recording.recording_id = recording.content_hash = number(load);
+  recording.samples = simulated(loaded, std::move(samples), 1.0);
+  return recording;
+}
+
+UnrecordedInput of(const Recording& test) {
   const AssetConfig asset = nominal_asset("eha");
   Data data;
   data.names = {"first"};
-  data.samples = {chattering_tests(swing_V).front().samples};
+  data.samples = {test.samples};
   return unrecorded_input(fit_model(asset, data, nullptr, 1).value(), data);
 }
+
+UnrecordedInput of_first_test(double swing_V) { return of(chattering_tests(swing_V).front()); }
 
 TEST(UnrecordedInput, WeighsNothingWhereItIsSmooth) {
   const UnrecordedInput smooth = of_first_test(0.0);
@@ -76,6 +95,13 @@ TEST(UnrecordedInput, WeighsNothingWhereItIsSmooth) {
   const auto residuals = smooth.weight.empty() ? 1 : smooth.weight.front().size();
   EXPECT_LT(static_cast<double>(little), 0.05 * static_cast<double>(residuals)) << "corners of the test alone";
   EXPECT_EQ(smooth.resolution, 0.0);
+}
+
+TEST(UnrecordedInput, WeighsNothingWhereResidualsShowThatItsCourseIsKnown) {
+  const UnrecordedInput known = of(known_course(nominal_asset("eha"), 1.0));
+  const double least = known.weight.empty() ? 1.0 : known.weight.front().minCoeff();
+  EXPECT_GT(least, 0.7) << "though it changes at every sample";
+  EXPECT_EQ(known.resolution, 0.0);
 }
 
 TEST(UnrecordedInput, FeignsLawsWhereItSwings) { EXPECT_EQ(of_first_test(4.0).resolution, 0.05); }

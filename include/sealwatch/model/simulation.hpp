@@ -36,7 +36,7 @@ struct ModelValues {
   std::vector<double> parameters;  ///< in the order of PlantDescription::parameters, then those of the asset's physics
   double load_factor = 0.0;        ///< Phi of this recording: load = phi (1 + Phi)
   std::vector<double> initial_state;  ///< in the order of PlantSimulation::state_names()
-  /// (1 + gain) signal + offset, in the order of PlantSimulation::channels().
+  /// (1 + gain) signal + offset, in the order of PlantSimulation::sensors().
   std::vector<double> sensor_gain = {}, sensor_offset = {};
 };
 
@@ -144,6 +144,8 @@ class PlantSimulation {
   [[nodiscard]] virtual std::span<const Site> sites() const = 0;
   /// The recorded channels that drive the simulation.
   [[nodiscard]] virtual std::span<const std::string> inputs() const = 0;
+  /// channels(), then the inputs that sensors of the plant measured (the flow into a cylinder that is simulated alone).
+  [[nodiscard]] virtual std::span<const std::string> sensors() const = 0;
   /// Smallest and largest recorded value of an input.
   [[nodiscard]] virtual std::pair<double, double> input_range(std::size_t input) const = 0;
   /// Parameters of the asset's physics, in the order in which they follow the plant's in ModelValues::parameters.

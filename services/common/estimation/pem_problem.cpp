@@ -74,7 +74,7 @@ Unknown sensor_unknown(const KnownValue& known, FreeQuantity quantity, const Pla
   const double most = kWithinTolerance * known.standard_deviation;
   const bool gain = quantity.kind == FreeQuantity::Kind::sensor_gain;
   return {.name = known.name,
-          .unit = gain ? "1" : simulation.plant().find_channel(simulation.channels()[quantity.index])->unit,
+          .unit = gain ? "1" : simulation.plant().find_channel(simulation.sensors()[quantity.index])->unit,
           .quantity = quantity,
           .scale = known.standard_deviation,
           .start = std::clamp(quantity.in(simulation.start()), known.value - most, known.value + most),

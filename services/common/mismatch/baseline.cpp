@@ -78,7 +78,9 @@ class BaselineFit {
   // Fitted again with every fixed value that shows as an unknown within its tolerance.
   FittedModel with_tolerances(FittedModel model) {
     const PlantDescription& plant = model.problem.recordings.front().simulation->plant();
-    fit_.known = that_show(known_values(asset_, plant), model, prepared(fit_), options_.threads);
+    std::vector<KnownValue> known = known_values(asset_, plant);
+    std::ranges::copy(known_inputs(asset_, model.problem), std::back_inserter(known));
+    fit_.known = that_show(known, model, prepared(fit_), options_.threads);
     if (fit_.known.empty()) return model;
     Result<FittedModel> again = fit_model(model.asset, prepared(fit_), &model, options_.threads);
     if (again) return std::move(*again);

@@ -12,15 +12,40 @@ namespace sealwatch::mismatch {
 
 namespace {
 
-// Of a channel, in all recordings.
-double range_of(const PemProblem& problem, Eigen::Index channel) {
+// Of what a sensor reads, in all recordings.
+double range_of(const PemProblem& problem, std::size_t sensor) {
   double least = std::numeric_limits<double>::infinity(), largest = -least;
   for (const PemRecording& recording : problem.recordings) {
-    const auto values = recording.simulation->recorded().col(channel);
-    least = std::min(least, values.minCoeff());
-    largest = std::max(largest, values.maxCoeff());
+    const PlantSimulation& simulation = *recording.simulation;
+    const auto reach = [&](double from, double to) { least = std::min(least, from), largest = std::max(largest, to); };
+    if (sensor < simulation.channels().size()) {
+      const auto values = simulation.recorded().col(static_cast<Eigen::Index>(sensor));
+      reach(values.minCoeff(), values.maxCoeff());
+      continue;
+    }
+    const auto input = std::ranges::find(simulation.inputs(), simulation.sensors()[sensor]);
+    const auto [from, to] = simulation.input_range(static_cast<std::size_t>(input - simulation.inputs().begin()));
+    reach(from, to);
   }
   return largest - least;
+}
+
+// What the sensors from `first` on are off by.
+std::vector<KnownValue> known_from(std::size_t first, std::size_t end, const AssetConfig& asset,
+                                   const PemProblem& problem) {
+  std::vector<KnownValue> known;
+  const std::span<const std::string> sensors = problem.recordings.front().simulation->sensors();
+  for (std::size_t k = first; k < end; ++k) {
+    const auto sensor = asset.sensors.find(sensors[k]);
+    const SensorSetting setting = sensor == asset.sensors.end() ? SensorSetting{} : sensor->second;
+    const double gain = setting.gain_tolerance > 0.0 ? setting.gain_tolerance : kUsualSensorTolerance;
+    const double offset =
+        setting.offset_tolerance > 0.0 ? setting.offset_tolerance : kUsualSensorTolerance * range_of(problem, k);
+    known.push_back({.name = sensor_gain_name(sensors[k]), .value = 0.0, .standard_deviation = gain});
+    if (offset > 0.0)
+      known.push_back({.name = sensor_offset_name(sensors[k]), .value = 0.0, .standard_deviation = offset});
+  }
+  return known;
 }
 
 }  // namespace
@@ -38,21 +63,12 @@ std::vector<KnownValue> known_values(const AssetConfig& asset, const PlantDescri
 }
 
 std::vector<KnownValue> known_sensors(const AssetConfig& asset, const PemProblem& problem) {
-  std::vector<KnownValue> known;
+  return known_from(0, problem.recordings.front().simulation->channels().size(), asset, problem);
+}
+
+std::vector<KnownValue> known_inputs(const AssetConfig& asset, const PemProblem& problem) {
   const PlantSimulation& simulation = *problem.recordings.front().simulation;
-  for (std::size_t c = 0; c < simulation.channels().size(); ++c) {
-    const std::string& channel = simulation.channels()[c];
-    const auto sensor = asset.sensors.find(channel);
-    const SensorSetting setting = sensor == asset.sensors.end() ? SensorSetting{} : sensor->second;
-    const double gain = setting.gain_tolerance > 0.0 ? setting.gain_tolerance : kUsualSensorTolerance;
-    const double offset = setting.offset_tolerance > 0.0
-                              ? setting.offset_tolerance
-                              : kUsualSensorTolerance * range_of(problem, static_cast<Eigen::Index>(c));
-    known.push_back({.name = sensor_gain_name(channel), .value = 0.0, .standard_deviation = gain});
-    if (offset > 0.0)
-      known.push_back({.name = sensor_offset_name(channel), .value = 0.0, .standard_deviation = offset});
-  }
-  return known;
+  return known_from(simulation.channels().size(), simulation.sensors().size(), asset, problem);
 }
 
 double occam_factor(const FittedModel& model, const std::vector<KnownValue>& of, double phi) {

@@ -36,6 +36,9 @@ inline constexpr double kUsualSensorTolerance = 0.0025;
 /// What the sensors of the simulated channels are off by, with the asset's tolerances or the usual ones.
 [[nodiscard]] std::vector<KnownValue> known_sensors(const AssetConfig& asset, const PemProblem& problem);
 
+/// What the sensors of measured inputs are off by. They are no channel that laws could be told from: never exact.
+[[nodiscard]] std::vector<KnownValue> known_inputs(const AssetConfig& asset, const PemProblem& problem);
+
 /// What a law of a sensor's gain or offset is called there; "" of other laws.
 [[nodiscard]] std::string tolerated_name(const Effect& effect);
 

@@ -42,31 +42,33 @@ double difference_step(const RecordedInput& recorded, SiteKind kind, std::size_t
 constexpr double kTight = 1e-7;
 
 // 1 + gain, per channel.
-Eigen::VectorXd gains_of(const ModelValues& values) {
-  return 1.0 + Eigen::Map<const Eigen::ArrayXd>(values.sensor_gain.data(),
-                                                static_cast<Eigen::Index>(values.sensor_gain.size()));
+Eigen::VectorXd gains_of(const ModelValues& values, Eigen::Index channels) {
+  return 1.0 + Eigen::Map<const Eigen::ArrayXd>(values.sensor_gain.data(), channels);
 }
 
 // y = (1 + g) z + b of each channel: dy/dtheta = (1 + g) dz/dtheta,  dy/dg = z,  dy/db = 1. `outputs` holds z and the
 // columns of what is free and not of a sensor, then the injected ones.
 void read_by_sensors(const ModelValues& values, std::span<const FreeQuantity> free, SimulatedOutputs& outputs) {
   const auto exact = [](double error) { return error == 0.0; };
-  if (std::ranges::none_of(free, &FreeQuantity::is_of_sensor) && std::ranges::all_of(values.sensor_gain, exact) &&
+  const Eigen::Index channels = outputs.values.cols(), samples = outputs.values.rows();
+  const auto reads = [&](const FreeQuantity& one) {
+    return one.is_of_sensor() && static_cast<Eigen::Index>(one.index) < channels;
+  };
+  if (std::ranges::none_of(free, reads) && std::ranges::all_of(values.sensor_gain, exact) &&
       std::ranges::all_of(values.sensor_offset, exact))
     return;
-  const Eigen::VectorXd gain = gains_of(values);
-  const Eigen::Index channels = gain.size(), samples = outputs.values.rows();
-  const auto of_sensors = std::ranges::count_if(free, &FreeQuantity::is_of_sensor);
+  const Eigen::VectorXd gain = gains_of(values, channels);
+  const auto of_sensors = std::ranges::count_if(free, reads);
   RowMatrix all = RowMatrix::Zero(samples * channels, outputs.sensitivities.cols() + of_sensors);
   std::vector<Eigen::Index> place;  // of each column that is not a sensor's
   for (std::size_t k = 0; k < free.size(); ++k)
-    if (!free[k].is_of_sensor()) place.push_back(static_cast<Eigen::Index>(k));
+    if (!reads(free[k])) place.push_back(static_cast<Eigen::Index>(k));
   while (std::ssize(place) < outputs.sensitivities.cols()) place.push_back(std::ssize(place) + of_sensors);
   for (Eigen::Index row = 0; row < all.rows(); ++row)
     for (std::size_t k = 0; k < place.size(); ++k)
       all(row, place[k]) = gain(row % channels) * outputs.sensitivities(row, static_cast<Eigen::Index>(k));
   for (std::size_t k = 0; k < free.size(); ++k) {
-    if (!free[k].is_of_sensor()) continue;
+    if (!reads(free[k])) continue;
     const auto channel = static_cast<Eigen::Index>(free[k].index);
     const bool of_gain = free[k].kind == FreeQuantity::Kind::sensor_gain;
     for (Eigen::Index sample = 0; sample < samples; ++sample)
@@ -96,7 +98,12 @@ RecordedSimulation::RecordedSimulation(const PlantDescription& plant, PhysicsTer
 RecordingErrors RecordedSimulation::errors_at(const ModelValues& values) const {
   RecordingErrors errors{.inputs = std::vector<RecordingErrors::Input>(input_names_.size())};
   for (const RecordingTerm& term : terms_.recording)
-    add_error(errors, term.kind, input_index(term), values.parameters[term.parameter]);
+    add_error(errors, term.kind, term.kind == SiteKind::clock_rate ? 0 : input_index(term.input),
+              values.parameters[term.parameter]);
+  for (std::size_t k = channel_names_.size(); k < sensor_names_.size(); ++k) {
+    add_error(errors, SiteKind::sensor_gain, input_index(sensor_names_[k]), values.sensor_gain[k]);
+    add_error(errors, SiteKind::sensor_bias, input_index(sensor_names_[k]), values.sensor_offset[k]);
+  }
   return errors;
 }
 
@@ -105,14 +112,36 @@ std::pair<double, double> RecordedSimulation::input_range(std::size_t input) con
   return {least, largest};
 }
 
-std::size_t RecordedSimulation::input_index(const RecordingTerm& term) const {
-  return static_cast<std::size_t>(std::ranges::find(input_names_, term.input) - input_names_.begin());
+std::size_t RecordedSimulation::input_index(const std::string& name) const {
+  return static_cast<std::size_t>(std::ranges::find(input_names_, name) - input_names_.begin());
+}
+
+std::vector<RecordedSimulation::Differentiated> RecordedSimulation::of_recording(
+    const ModelValues& values, std::span<const FreeQuantity> free) const {
+  std::vector<Differentiated> all;
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    const FreeQuantity& one = free[k];
+    if (one.is_of_sensor() && !is_of_output(one))
+      all.push_back(
+          {.free = k,
+           .law = {one.kind == FreeQuantity::Kind::sensor_gain ? SiteKind::sensor_gain : SiteKind::sensor_bias,
+                   input_index(sensor_names_[one.index])},
+           .size = one.in(values)});
+    for (const RecordingTerm& term : terms_.recording)
+      if (one.kind == FreeQuantity::Kind::parameter && one.index == term.parameter)
+        all.push_back({.free = k,
+                       .law = {term.kind, input_index(term.input)},
+                       .size = values.parameters[term.parameter],
+                       .parameter = term.parameter});
+  }
+  return all;
 }
 
 Result<SimulatedOutputs> RecordedSimulation::run(const ModelValues& values, std::span<const FreeQuantity> free,
                                                  const SimulationOptions& options, InjectedColumns* injected) const {
   std::vector<FreeQuantity> of_plant;
-  std::ranges::copy_if(free, std::back_inserter(of_plant), [](const FreeQuantity& one) { return !one.is_of_sensor(); });
+  std::ranges::copy_if(free, std::back_inserter(of_plant),
+                       [&](const FreeQuantity& one) { return !one.is_of_sensor() || !is_of_output(one); });
   Result<SimulatedOutputs> outputs = run_exact(values, of_plant, options, injected);
   if (outputs) read_by_sensors(values, free, *outputs);
   return outputs;
@@ -121,29 +150,23 @@ Result<SimulatedOutputs> RecordedSimulation::run(const ModelValues& values, std:
 Result<SimulatedOutputs> RecordedSimulation::run_exact(const ModelValues& values, std::span<const FreeQuantity> free,
                                                        const SimulationOptions& options,
                                                        InjectedColumns* injected) const {
-  if (terms_.recording.empty()) return run_driven_by(input_, values, free, options, injected);
+  if (terms_.recording.empty() && sensor_names_.size() == channel_names_.size())
+    return run_driven_by(input_, values, free, options, injected);
   const RecordingErrors errors = errors_at(values);
   std::vector<FreeQuantity> seen(free.begin(), free.end());
-  std::vector<std::pair<std::size_t, const RecordingTerm*>> of_recording;
-  for (std::size_t k = 0; k < free.size(); ++k)
-    for (const RecordingTerm& term : terms_.recording)
-      if (free[k].kind == FreeQuantity::Kind::parameter && free[k].index == term.parameter)
-        of_recording.emplace_back(k, &term);
-  const auto law_of = [&](const RecordingTerm& term) { return RecordingLaw{term.kind, input_index(term)}; };
-  const auto by = [&](const RecordingTerm& term) {
-    return by_recording(law_of(term), errors, values.parameters[term.parameter]);
-  };
+  const std::vector<Differentiated> by_laws = of_recording(values, free);
+  const auto by = [&](const Differentiated& one) { return by_recording(one.law, errors, one.size); };
   if (differentiates_by_recording())
-    for (const auto& [k, term] : of_recording) seen[k] = by(*term).quantity;
+    for (const Differentiated& one : by_laws) seen[one.free] = by(one).quantity;
   auto outputs = run_driven_by(input_.without(errors), values, seen, options, injected);
-  for (const auto& [k, term] : of_recording) {
+  for (const Differentiated& one : by_laws) {
     if (!outputs) return outputs;
-    auto column = outputs->sensitivities.col(static_cast<Eigen::Index>(k));
+    auto column = outputs->sensitivities.col(static_cast<Eigen::Index>(one.free));
     if (differentiates_by_recording()) {
-      column *= by(*term).factor;
+      column *= by(one).factor;
       continue;
     }
-    const Result<RowMatrix> difference = this->difference(values, law_of(*term), term->parameter, options);
+    const Result<RowMatrix> difference = this->difference(values, one.law, one.parameter, options);
     if (!difference) return fail(difference.error());
     column = difference->reshaped<Eigen::RowMajor>();
   }
@@ -196,7 +219,7 @@ Result<RowMatrix> RecordedSimulation::recording_columns(const ModelValues& value
       all.col(k) = column->reshaped<Eigen::RowMajor>();
     }
   }
-  const Eigen::VectorXd gains = gains_of(values);
+  const Eigen::VectorXd gains = gains_of(values, channels);
   for (Eigen::Index row = 0; row < all.rows(); ++row) all.row(row) *= gains(row % channels);
   return all;
 }
@@ -221,6 +244,13 @@ Result<RowMatrix> RecordedSimulation::difference(const ModelValues& values, Reco
   return RowMatrix((sides[1] - sides[0]) / (2.0 * step));
 }
 
+void RecordedSimulation::add_sensor(const std::string& channel, const AssetConfig& asset) {
+  const auto sensor = asset.sensors.find(channel);
+  sensor_names_.push_back(channel);
+  sensor_gain_.push_back(sensor != asset.sensors.end() ? sensor->second.gain_error : 0.0);
+  sensor_offset_.push_back(sensor != asset.sensors.end() ? sensor->second.offset_error : 0.0);
+}
+
 void RecordedSimulation::select_channels(std::span<const OutputName> outputs, const AssetConfig& asset,
                                          const TimeSeries& recorded) {
   for (std::size_t k = 0; k < outputs.size(); ++k) {
@@ -231,9 +261,10 @@ void RecordedSimulation::select_channels(std::span<const OutputName> outputs, co
         sensor != asset.sensors.end() ? sensor->second.time_constant_s : plant_.find_channel(name)->time_constant_s;
     channels_.push_back({static_cast<int>(k), outputs[k].state, time_constant});
     channel_names_.push_back(name);
-    sensor_gain_.push_back(sensor != asset.sensors.end() ? sensor->second.gain_error : 0.0);
-    sensor_offset_.push_back(sensor != asset.sensors.end() ? sensor->second.offset_error : 0.0);
+    add_sensor(name, asset);
   }
+  for (const std::string& name : input_names_)
+    if (recorded.has(name) && !plant_.find_channel(name)->input) add_sensor(name, asset);
   const auto rows = static_cast<Eigen::Index>(recorded.time_s.size());
   recorded_.resize(rows, static_cast<Eigen::Index>(channels_.size()));
   for (std::size_t c = 0; c < channels_.size(); ++c)

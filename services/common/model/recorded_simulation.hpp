@@ -36,6 +36,7 @@ class RecordedSimulation : public PlantSimulation {
   [[nodiscard]] const RowMatrix& recorded() const override { return recorded_; }
   [[nodiscard]] std::span<const PhysicsParameter> physics_parameters() const override { return terms_.parameters; }
   [[nodiscard]] std::span<const std::string> inputs() const override { return input_names_; }
+  [[nodiscard]] std::span<const std::string> sensors() const override { return sensor_names_; }
   [[nodiscard]] std::pair<double, double> input_range(std::size_t input) const override;
   [[nodiscard]] Result<SimulatedOutputs> run(const ModelValues& values, std::span<const FreeQuantity> free,
                                              const SimulationOptions& options, InjectedColumns* injected) const final;
@@ -54,18 +55,29 @@ class RecordedSimulation : public PlantSimulation {
                                                                InjectedColumns* injected) const = 0;
   /// Whether run_driven_by() takes free quantities of the recording; else they come from differences of whole runs.
   [[nodiscard]] virtual bool differentiates_by_recording() const { return false; }
-  /// Takes the outputs that are recorded.
+  /// Takes the outputs that are recorded, and the sensors of what drives the simulation.
   void select_channels(std::span<const OutputName> outputs, const AssetConfig& asset, const TimeSeries& recorded);
   /// The plant's states and start, to which those of the laws are added. `at_rest`: known at the beginning alone.
   void set_states(std::vector<std::string> names, std::vector<std::string> slow, ModelValues start,
                   const std::vector<std::string>& at_rest = {});
 
  private:
-  /// With exact sensors.
+  /// With exact sensors of the outputs.
   [[nodiscard]] Result<SimulatedOutputs> run_exact(const ModelValues& values, std::span<const FreeQuantity> free,
                                                    const SimulationOptions& options, InjectedColumns* injected) const;
   [[nodiscard]] RecordingErrors errors_at(const ModelValues& values) const;
-  [[nodiscard]] std::size_t input_index(const RecordingTerm& term) const;
+  [[nodiscard]] std::size_t input_index(const std::string& name) const;
+  /// A law of the recording by which a run is differentiated. `parameter`: its size, where it is in force as such.
+  struct Differentiated {
+    std::size_t free = 0;
+    RecordingLaw law;
+    double size = 0.0;
+    std::size_t parameter = static_cast<std::size_t>(-1);
+  };
+  [[nodiscard]] std::vector<Differentiated> of_recording(const ModelValues& values,
+                                                         std::span<const FreeQuantity> free) const;
+  [[nodiscard]] bool is_of_output(const FreeQuantity& sensors) const { return sensors.index < channel_names_.size(); }
+  void add_sensor(const std::string& channel, const AssetConfig& asset);
   struct ByRecording {
     FreeQuantity quantity;
     double factor = 1.0;  ///< of the quantity's column
@@ -78,9 +90,9 @@ class RecordedSimulation : public PlantSimulation {
   PhysicsTerms terms_;
   std::vector<std::string> input_names_;
   RecordedInput input_;
-  std::vector<std::string> state_names_, slow_state_names_, free_state_names_, channel_names_;
+  std::vector<std::string> state_names_, slow_state_names_, free_state_names_, channel_names_, sensor_names_;
   std::vector<SimulatedChannel> channels_;
-  std::vector<double> sensor_gain_, sensor_offset_;  ///< the asset's, per channel
+  std::vector<double> sensor_gain_, sensor_offset_;  ///< the asset's, per sensor
   RowMatrix recorded_;
   ModelValues start_;
 };

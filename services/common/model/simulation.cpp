@@ -193,10 +193,9 @@ Result<FreeQuantity> PlantSimulation::find(std::string_view quantity) const {
     if (name == quantity) return FreeQuantity{FreeQuantity::Kind::initial_state, index};
     names.push_back(name);
   }
-  for (std::size_t index = 0; index < channels().size(); ++index) {
-    if (quantity == sensor_gain_name(channels()[index])) return FreeQuantity{FreeQuantity::Kind::sensor_gain, index};
-    if (quantity == sensor_offset_name(channels()[index]))
-      return FreeQuantity{FreeQuantity::Kind::sensor_offset, index};
+  for (std::size_t index = 0; index < sensors().size(); ++index) {
+    if (quantity == sensor_gain_name(sensors()[index])) return FreeQuantity{FreeQuantity::Kind::sensor_gain, index};
+    if (quantity == sensor_offset_name(sensors()[index])) return FreeQuantity{FreeQuantity::Kind::sensor_offset, index};
   }
   return fail(Error{.file = {},
                     .place = {},

@@ -199,9 +199,7 @@ TEST(RecordingLaws, SensitivitiesOfAHeldInput) {
                 {1e-3, 1e-2, 0.1, 1e-4, 1e-4}, 0.01);
 }
 
-/// The cylinder's circuit is driven by the measured flow: its sensor's errors are taken off it.
-TEST(RecordingLaws, ASensorThatDrivesIsPutRight) {
-  const AssetConfig asset = with_error(nominal_asset("eha"), "clock_rate", "clock", "c", 0.0);
+TimeSeries driven_by_flow() {
   TimeSeries acted;
   for (int row = 0; row < 800; ++row) acted.time_s.push_back(0.01 * row);
   for (const char* name : {"flow", "pressure_a", "velocity", "position"}) {
@@ -214,6 +212,13 @@ TEST(RecordingLaws, ASensorThatDrivesIsPutRight) {
                                                             : 0.0);
     acted.channels.push_back(std::move(series));
   }
+  return acted;
+}
+
+/// The cylinder's circuit is driven by the measured flow: its sensor's errors are taken off it.
+TEST(RecordingLaws, ASensorThatDrivesIsPutRight) {
+  const AssetConfig asset = with_error(nominal_asset("eha"), "clock_rate", "clock", "c", 0.0);
+  const TimeSeries acted = driven_by_flow();
   TimeSeries recorded = acted;
   for (double& flow : values_of(recorded, "flow")) flow = 1.03 * flow + 1e-7;
   const AssetConfig known =
@@ -227,6 +232,20 @@ TEST(RecordingLaws, ASensorThatDrivesIsPutRight) {
       **PlantSimulation::create(late, recorded),
       {"sensor:flow.sensor_gain.g", "sensor:flow.sensor_bias.b", "sensor:flow.sensor_lag.tau", "clock.clock_rate.c"},
       {1e-3, 1e-8, 1e-3, 1e-4}, 0.02);
+}
+
+/// The same errors, known within the sensor's tolerance rather than as laws.
+TEST(RecordingLaws, ASensorThatDrivesIsOffByWhatTheAssetSays) {
+  const AssetConfig asset = with_error(nominal_asset("eha"), "clock_rate", "clock", "c", 0.0);
+  const TimeSeries acted = driven_by_flow();
+  TimeSeries recorded = acted;
+  for (double& flow : values_of(recorded, "flow")) flow = 1.03 * flow + 1e-7;
+  AssetConfig known = asset;
+  known.sensors["flow"].gain_error = 0.03;
+  known.sensors["flow"].offset_error = 1e-7;
+  EXPECT_LT(worst_difference(outputs_of(known, recorded), outputs_of(asset, acted)), kSame);
+  expect_slopes(**PlantSimulation::create(known, recorded), {"sensor:flow.gain_error", "sensor:flow.offset_error"},
+                {1e-3, 1e-8}, 0.02);
 }
 
 /// A zero that moves, with all else that a sensor may do: time counts from the first sample, wherever that is.

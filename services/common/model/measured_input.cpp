@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <numeric>
+
+#include <Eigen/Dense>
 
 namespace sealwatch {
 namespace {
-
-constexpr double kReach_s = 0.04;
 
 struct LocalFit {
   double value = 0.0, slope = 0.0;
@@ -75,11 +77,67 @@ std::vector<double> means_of_neighbours(const std::vector<double>& held) {
   return means;
 }
 
+namespace {
+
+constexpr double kReach_s = 0.04;
+constexpr double kStandardErrors = 3.0;
+
+// Standard deviation of white noise: of third differences, without the tenth of them that is largest (corners).
+double noise_of(const std::vector<double>& values) {
+  constexpr double kKept = 0.9, kOfKept = 0.623;  // the variance of a normal deviate's smallest nine tenths
+  constexpr double kThird = 20.0;                 // 1 + 9 + 9 + 1
+  if (values.size() < 4) return 0.0;
+  std::vector<double> squares;
+  for (std::size_t k = 3; k < values.size(); ++k)
+    squares.push_back(std::pow(values[k] - 3.0 * values[k - 1] + 3.0 * values[k - 2] - values[k - 3], 2));
+  std::ranges::sort(squares);
+  squares.resize(std::max<std::size_t>(1, static_cast<std::size_t>(kKept * static_cast<double>(squares.size()))));
+  const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
+  return std::sqrt(sum / static_cast<double>(squares.size()) / (kOfKept * kThird));
+}
+
+struct Estimate {
+  double value = 0.0, std_error = 0.0;
+};
+
+// u at a sample by least squares over its neighbours `from` to `to`.
+Estimate undone(const std::vector<double>& time_s, const std::vector<double>& values, std::size_t at, std::size_t from,
+                std::size_t to, double time_constant_s, double noise_std) {
+  const double step_s = (time_s[to] - time_s[from]) / static_cast<double>(to - from), lag = time_constant_s / step_s;
+  Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (std::size_t k = from; k <= to; ++k) {
+    const double d = (time_s[k] - time_s[at]) / step_s;
+    const Eigen::Vector3d powers(1.0, d, d * d);
+    gram += powers * powers.transpose();
+    right += values[k] * powers;
+  }
+  const Eigen::Vector3d by = gram.ldlt().solve(Eigen::Vector3d(1.0, lag, 0.0));
+  return {.value = by.dot(right), .std_error = noise_std * std::sqrt(std::max(0.0, by(0) + lag * by(1)))};
+}
+
+}  // namespace
+
 std::vector<double> undo_sensor(const std::vector<double>& time_s, const std::vector<double>& values,
                                 double time_constant_s) {
-  SmoothedInput input = smoothed_input(time_s, values, kReach_s);
-  for (std::size_t k = 0; k < values.size(); ++k) input.values[k] += time_constant_s * input.slopes[k];
-  return std::move(input.values);
+  const std::size_t count = values.size();
+  if (count < 3) return values;
+  const double step_s = (time_s.back() - time_s.front()) / static_cast<double>(count - 1);
+  const auto longest = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(kReach_s / step_s)));
+  const double noise_std = noise_of(values);
+  std::vector<double> inputs(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    double least = -std::numeric_limits<double>::infinity(), most = -least;
+    for (std::size_t reach = 2; reach <= longest; ++reach) {
+      const Estimate estimate =
+          undone(time_s, values, k, k - std::min(k, reach), std::min(count - 1, k + reach), time_constant_s, noise_std);
+      least = std::max(least, estimate.value - kStandardErrors * estimate.std_error);
+      most = std::min(most, estimate.value + kStandardErrors * estimate.std_error);
+      if (least > most) break;
+      inputs[k] = estimate.value;
+    }
+  }
+  return inputs;
 }
 
 }  // namespace sealwatch

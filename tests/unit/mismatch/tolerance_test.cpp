@@ -158,5 +158,25 @@ TEST(Tolerance, ASensorWhoseZeroMovesDuringTheTestIsAFault) {
   }
 }
 
+// A flow that drives the cylinder circuit is measured itself.
+TEST(Tolerance, OfAMeasuredFlowIsNoPhysicsAndNoLeakage) {
+  const AssetConfig asset = actuator();
+  std::vector<Recording> tests = tests_of(asset);
+  for (Recording& test : tests) {
+    std::erase_if(test.samples.channels, [](const Series& channel) {
+      return channel.name == "motor_voltage" || channel.name == "motor_current" || channel.name == "shaft_speed";
+    });
+    for (double& flow : std::ranges::find(test.samples.channels, "flow", &Series::name)->values)
+      flow = 1.003 * flow - 2e-8;
+  }
+  const auto found = explain(asset, tests, {}, {.time_limit_s = 15.0});
+  ASSERT_TRUE(found) << found.error().describe();
+  EXPECT_THAT(found->effects, IsEmpty()) << found->summary;
+  const auto leakage = std::ranges::find(found->parameters, "R_CL", &ParameterShift::name);
+  ASSERT_NE(leakage, found->parameters.end());
+  const double truth = asset.parameters.at("R_CL").value;
+  EXPECT_NEAR(leakage->before, truth, 3.0 * leakage->before_std) << "of " << truth;
+}
+
 }  // namespace
 }  // namespace sealwatch::mismatch

@@ -344,6 +344,32 @@ TEST_F(OperatorOfAlarms, ShelvesAcknowledgesAndTakesOutOfService) {
     EXPECT_THAT(audit.output, ContainsRegex(std::string("advisory_generation [0-9]+  ") + act + ".*by J. Silva"));
 }
 
+/// They were told to one service alone: the others keep its record of them.
+TEST_F(OperatorOfAlarms, ALostJournalHasBackWhatWasSaidOfThem) {
+  const std::string state = state_directory("state").string();
+  const pid_t hung = process_of(status(), "health_assessment");
+  kill(hung, SIGSTOP);
+  ASSERT_TRUE(becomes(kSilent, "unacknowledged"));
+  const std::string until = format_utc({std::time(nullptr) * 1'000'000'000 + 86'400'000'000'000});
+  EXPECT_EQ(say("shelve", {"-", kSilent, "--until", until, "--reason", "being looked at"}).status, 0);
+  EXPECT_EQ(say("out-of-service", {"XT03-MV2", "--reason", "valve is being replaced"}).status, 0);
+  ASSERT_TRUE(becomes(kSilent, "shelved"));
+  ASSERT_TRUE(becomes("out_of_service", "out_of_service"));
+  kill(hung, SIGCONT);
+  kill(up_, SIGTERM);
+  waitpid(up_, nullptr, 0);
+  for (const char* end : {"", "-wal", "-shm"}) std::filesystem::remove(state + "/advisory_generation.db" + end);
+  up_ = start({"sealwatch", "up", "--config", config(), "--state", state}, folder_ / "up_again.log");
+  ASSERT_TRUE(becomes("out_of_service", "out_of_service"));
+  const pid_t hangs_again = process_of(status(), "health_assessment");
+  kill(hangs_again, SIGSTOP);
+  EXPECT_TRUE(becomes(kSilent, "shelved"));
+  kill(hangs_again, SIGCONT);
+  const std::string audit = run({"sealwatch", "audit", "--config", config(), "--state", state}).output;
+  for (const char* act : {"alarm_shelved", "asset_out_of_service"})
+    EXPECT_THAT(audit, ContainsRegex(std::string("advisory_generation.*") + act + ".*fetched back from"));
+}
+
 TEST_F(OperatorOfAlarms, RefusesWhatCannotBeDone) {
   const Finished unknown =
       say("shelve", {"XT03-MV2", "sensor_lost/pressure_a", "--until", "2199-01-01", "--reason", "a try"});

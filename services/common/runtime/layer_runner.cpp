@@ -82,7 +82,7 @@ Status LayerRunner::start() {
   const auto anchors = journal_.anchors();
   if (!anchors) return fail(anchors.error());
   for (const AuditAnchor& heard : *anchors) compared_.insert(heard.service);
-  is_new_ = *is_new && last_act_.sequence == 0;
+  is_new_ = *is_new;
   waits_for_acts_ = is_new_ && keeps_acts() && !options_.strangers.services.empty();
   started_ns_ = clock_.now().nanoseconds;
   look_at_clock();

@@ -311,7 +311,7 @@ std::optional<std::string> LayerRunner::lost_for_ever() const {
 /// The neighbours' messages make the conclusions again, and their records have what people said. What nobody can give
 /// back would be missing in this service alone, and nobody would know.
 Status LayerRunner::compare_acts() {
-  if (!is_new_) return {};
+  if (!is_new_ || waits_for_acts_) return {};  // a restart before all acts are here waits for them again
   const auto what = lost_for_ever();
   if (!what && !all_heard()) return {};
   is_new_ = false;

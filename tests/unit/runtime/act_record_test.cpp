@@ -306,6 +306,35 @@ TEST_F(ActRecordTest, WhoSaidItAndIsStillThereChangesNothing) {
   EXPECT_THAT(audit("state_detection"), ElementsAre(HasSubstr("fetched back from"), HasSubstr("taken")));
 }
 
+/// A service that was stopped meanwhile, or has heard of one act, has not heard of all.
+TEST_F(ActRecordTest, ActsComeFirstAlsoWhereTheServiceStopsBeforeItHasThemAll) {
+  test("a", "2029-01-01");
+  test("b", "2029-02-01");
+  const Message first = retraction(kTestRetracted, "a");
+  const Message second = retraction(kTestsRetracted, "2029-02-01T00:00:00Z");
+  say(first);
+  say(second);
+  test("c", "2029-03-01");
+  stop("prognostic_assessment");
+  stop("advisory_generation");
+  lose("state_detection");
+  is_health_silent_ = true;
+  const auto longest = std::exchange(options_.longest_without_acts, std::chrono::milliseconds(0));
+  start("state_detection");
+  for (int k = 0; k < 5; ++k) step();
+  EXPECT_TRUE(InMemoryBus(network_).publish(first));
+  EXPECT_TRUE(steps_until([&] { return !audit("state_detection").empty(); }));
+  stop("state_detection");
+  options_.longest_without_acts = longest;
+  is_health_silent_ = false;
+  InMemoryBus stays(network_);
+  EXPECT_TRUE(stays.publish(second));
+  start_all();
+  all_take("advisory/health_report/c");
+  all_take("advisory/" + header_of(second).message_id);
+  EXPECT_THAT(counted("state_detection"), ElementsAre("c"));
+}
+
 /// Earlier versions kept no record for others: what their audit trail tells is written into one.
 TEST_F(ActRecordTest, WhatAnEarlierVersionTookIsHadBackFromItsAuditTrail) {
   test("a", "2029-01-01");

@@ -151,8 +151,7 @@ Status LayerRunner::step(std::chrono::milliseconds timeout) {
     if (Status status = let_time_pass(); !status) return status;
     if (Status status = note_acts(); !status) return status;
     look_whether_assets_are_quiet();
-    if (resends_.empty())
-      if (Status status = publish_latest(); !status) return status;
+    if (Status status = publish_latest(); !status) return status;
     if (Status status = drop_old_samples(); !status) return status;
   }
   report_progress();

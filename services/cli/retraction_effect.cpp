@@ -154,6 +154,13 @@ std::optional<Error> objection(const KnownTests& known, const RetractOptions& op
   return std::nullopt;
 }
 
+void hear(const RemainingLife& life, const std::string& act_id, KnownTests& known,
+          std::optional<RemainingLife>& answer) {
+  if (answer) return;
+  const bool is_answer = std::ranges::count(life.header.source_ids, act_id) > 0;
+  (is_answer ? answer : known.life) = life;
+}
+
 std::optional<Error> objection(const KnownTests& known, const RemainingLife& answer, const RetractOptions& options) {
   // What is known to count changes something, in another layer perhaps. Of a date, tests that were set aside may be meant.
   const bool counts = !options.pst_id.empty() || known.in_force.contains(options.withdraw);

@@ -460,6 +460,7 @@ TEST_F(Operator, ALostJournalHasBackWhatPeopleSaid) {
   const std::string audit = run({"sealwatch", "audit", "--state", state}).output;
   for (const char* service : {"prognostic_assessment", "state_detection", "data_acquisition"})
     EXPECT_THAT(audit, ContainsRegex(std::string(service) + ".*tests_retracted.*fetched back from"));
+  EXPECT_THAT(audit, Not(ContainsRegex("refused: (taken|waits)"))) << "nobody refused any of it";
   for (const json& service : status()["services"])
     for (const json& alarm : service["alarms"])
       if (alarm["kind"] == "set_aside") {

@@ -280,6 +280,14 @@ class OperatorOfAlarms : public Operator {
  protected:
   static constexpr const char* kSilent = "no_heartbeat/health_assessment";
 
+  /// What is stored, but for the acts that services keep for each other.
+  [[nodiscard]] StoredResults conclusions() const {
+    StoredResults stored = stored_results(state_directory("state").string());
+    for (auto& [service, outputs] : stored)
+      std::erase_if(outputs, [](const auto& output) { return output.first.starts_with("act_record/"); });
+    return stored;
+  }
+
   [[nodiscard]] json status() const {
     return json::parse(run({"sealwatch", "status", "--config", config(), "--json", "--seconds", "1.5"}).output);
   }
@@ -313,7 +321,7 @@ class OperatorOfAlarms : public Operator {
 TEST_F(OperatorOfAlarms, ShelvesAcknowledgesAndTakesOutOfService) {
   const json well = status();
   const pid_t hung = process_of(well, "health_assessment");
-  const StoredResults before = stored_results(state_directory("state").string());
+  const StoredResults before = conclusions();
   kill(hung, SIGSTOP);
   ASSERT_TRUE(becomes(kSilent, "unacknowledged"));
   const std::string until = format_utc({std::time(nullptr) * 1'000'000'000 + 86'400'000'000'000});
@@ -336,7 +344,7 @@ TEST_F(OperatorOfAlarms, ShelvesAcknowledgesAndTakesOutOfService) {
   ASSERT_TRUE(becomes("out_of_service", "out_of_service"));
   EXPECT_EQ(say("in-service", {"XT03-MV2"}).status, 0);
   ASSERT_TRUE(becomes("out_of_service", ""));
-  EXPECT_EQ(before, stored_results(state_directory("state").string())) << "none of it is concluded from";
+  EXPECT_TRUE(before == conclusions()) << "none of it is concluded from";
   const Finished audit =
       run({"sealwatch", "audit", "--config", config(), "--state", state_directory("state").string()});
   for (const char* act :

@@ -8,6 +8,7 @@
 #include "services/cli/session.hpp"
 #include "services/cli/state_journals.hpp"
 #include "services/cli/terminal.hpp"
+#include "services/common/runtime/operator_acts.hpp"
 #include "services/common/store/audit_trail.hpp"
 
 namespace sealwatch::cli {
@@ -46,6 +47,12 @@ bool is_asked_for(const AuditEntry& entry, const AuditOptions& options) {
   return options.asset_id.empty() || entry.act.asset_id == options.asset_id;
 }
 
+/// Nothing for nearly all, which were taken as they were said.
+std::string became_of(const std::string& outcome) {
+  if (outcome == kTaken) return {};
+  return is_taken(outcome) || outcome.starts_with("waits ") ? outcome : "refused: " + outcome;
+}
+
 void print(const Trail& trail, const AuditOptions& options) {
   for (const AuditEntry& entry : trail.entries) {
     if (!is_asked_for(entry, options)) continue;
@@ -53,7 +60,7 @@ void print(const Trail& trail, const AuditOptions& options) {
     std::string line = to_the_second(act.at) + "  " + trail.service + " " + std::to_string(entry.sequence) + "  " +
                        act.kind + "  " + act.asset_id + "  by " + act.who + "  " + act.subject;
     if (!act.text.empty()) line += "  (" + act.text + ")";
-    if (act.outcome != "taken") line += "  refused: " + act.outcome;
+    if (const std::string became = became_of(act.outcome); !became.empty()) line += "  " + became;
     std::printf("%s\n", visible(line).c_str());
   }
   const std::string count = std::to_string(trail.entries.size()) + (trail.entries.size() == 1 ? " act" : " acts");

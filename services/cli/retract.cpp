@@ -1,5 +1,4 @@
 // `sealwatch retract`: tests that must not count, or count again.
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 
@@ -57,12 +56,12 @@ std::optional<MaintenanceEvent> event_of(const RetractOptions& options) {
   return std::nullopt;
 }
 
-/// Sends it, and hears what prognosis, where it tells of this asset at all, answers.
-int send_and_hear(std::optional<Session>& session, const MaintenanceEvent& event, bool is_answered,
+/// Sends it, and hears what prognosis, where it tells of this asset at all, answers, and told last before.
+int send_and_hear(std::optional<Session>& session, const MaintenanceEvent& event, bool is_answered, KnownTests& known,
                   std::optional<RemainingLife>& answer) {
   const auto look = [&](const Message& message) {
     const auto* life = std::get_if<RemainingLife>(&message);
-    if (life != nullptr && std::ranges::count(life->header.source_ids, event.header.message_id) > 0) answer = *life;
+    if (life != nullptr && life->asset_id == event.asset_id) hear(*life, event.header.message_id, known, answer);
   };
   const int sent = send(session, event, kReadersOfMaintenance, look);
   if (sent != kOk || !is_answered) return sent;
@@ -80,7 +79,7 @@ int run_retract(const RetractOptions& options) {
   if (!event) return kBadInput;
   std::optional<Session> session = open_for(options.config, options.asset_id, options.by);
   if (!session) return kBadInput;
-  const KnownTests known = known_tests(*session, options);
+  KnownTests known = known_tests(*session, options);
   if (const auto error = objection(known, options)) {
     complain(*error);
     return kAnswerIsNo;
@@ -88,7 +87,7 @@ int run_retract(const RetractOptions& options) {
   const bool waits = session->configuration.acts_confirmed_by_second && may_lower_an_advisory(*event);
   const AssetConfig* const asset = session->configuration.find_asset(options.asset_id);
   std::optional<RemainingLife> answer;
-  const int sent = send_and_hear(session, *event, !waits && asset != nullptr && asset->condition, answer);
+  const int sent = send_and_hear(session, *event, !waits && asset != nullptr && asset->condition, known, answer);
   if (sent != kOk || says_that_it_waits(*session, *event)) return sent;
   if (const auto error = answer ? objection(known, *answer, options) : std::nullopt) {
     complain(*error);

@@ -8,6 +8,7 @@
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/message/retraction.hpp"
 #include "services/cli/state_journals.hpp"
+#include "services/common/runtime/operator_acts.hpp"
 #include "services/common/store/audit_trail.hpp"
 #include "services/data_acquisition/pst_id.hpp"
 
@@ -60,7 +61,7 @@ bool take_acts(JournalReader& journal, const std::string& connection, const std:
   if (!acts || !lives) return false;
   std::set<std::string> ids;
   for (const AuditEntry& entry : *acts)
-    if (entry.act.asset_id == asset_id && (entry.act.outcome == "taken" || entry.act.outcome.starts_with("waits")))
+    if (entry.act.asset_id == asset_id && (is_taken(entry.act.outcome) || entry.act.outcome.starts_with("waits")))
       ids.insert(entry.act.subject);
   for (const Message& life : *lives) ids.insert(header_of(life).source_ids.begin(), header_of(life).source_ids.end());
   for (const std::string& id : ids)
@@ -152,6 +153,13 @@ std::optional<Error> objection(const KnownTests& known, const RetractOptions& op
   if (!options.withdraw.empty() && !known.in_force.contains(options.withdraw) && !may_be_an_act(options))
     return error_about(known, options, "is no retraction and no replacement of " + options.asset_id + " in force");
   return std::nullopt;
+}
+
+void hear(const RemainingLife& life, const std::string& act_id, KnownTests& known,
+          std::optional<RemainingLife>& answer) {
+  if (answer) return;
+  const bool is_answer = std::ranges::count(life.header.source_ids, act_id) > 0;
+  (is_answer ? answer : known.life) = life;
 }
 
 std::optional<Error> objection(const KnownTests& known, const RemainingLife& answer, const RetractOptions& options) {

@@ -25,6 +25,11 @@ struct KnownTests {
 /// Why the act means nothing: a test that is none of the asset, a date without tests since, nothing to withdraw.
 [[nodiscard]] std::optional<Error> objection(const KnownTests& known, const RetractOptions& options);
 
+/// A life that prognosis publishes while the act is sent: the answer to it, or what stood last before the answer. What
+/// was heard first may be older, sent again to a reader that missed it; the last word follows it.
+void hear(const RemainingLife& life, const std::string& act_id, KnownTests& known,
+          std::optional<RemainingLife>& answer);
+
 /// The same, after prognosis answered it: it concludes from the same tests as before. Nothing where that cannot be told.
 [[nodiscard]] std::optional<Error> objection(const KnownTests& known, const RemainingLife& answer,
                                              const RetractOptions& options);

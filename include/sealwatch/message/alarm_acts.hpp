@@ -59,4 +59,15 @@ struct AlarmAct {
   return act.alarm_id.empty() == is_about_an_alarm ? std::nullopt : std::optional(act);
 }
 
+/// When it was said, by its id.
+[[nodiscard]] inline std::optional<UtcTime> time_of_alarm_act(const std::string& asset_id, const std::string& act_id) {
+  const std::string begin = "alarm_act/" + asset_id + "/";
+  if (!act_id.starts_with(begin)) return std::nullopt;
+  const auto time = parse_utc(act_id.substr(begin.size(), act_id.find('/', begin.size()) - begin.size()));
+  return time ? std::optional(*time) : std::nullopt;
+}
+
+/// Whether what an acknowledgement names is an advisory; else it is an alarm, by alarm_id().
+[[nodiscard]] inline bool is_advisory_id(std::string_view id) { return id.starts_with("recommendation/"); }
+
 }  // namespace sealwatch

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -59,9 +60,15 @@ class AcceptedModel {
       if (of_what_was_there(one.header.event_time_ns)) conclusion.consumed.push_back(one.header.message_id);
     std::erase_if(known_, [&](const auto& one) { return of_what_was_there(one.header.event_time_ns); });
   }
-  /// Lets time pass: what names a discrepancy that nobody published does not wait for ever.
+  /// Lets time pass: what names a discrepancy that nobody published does not wait for ever. It counts from the first
+  /// call: who fetches back what was said years ago waits for its discrepancy from then on.
   void tick(UtcTime now, Conclusion& conclusion) {
-    while (!waiting_.empty() && now.nanoseconds - waiting_.front().header.event_time_ns > kPatience_ns)
+    std::erase_if(waits_since_, [this](const auto& one) {
+      return std::ranges::none_of(waiting_, [&](const auto& said) { return said.header.message_id == one.first; });
+    });
+    for (const ModelAcceptance& said : waiting_) waits_since_.try_emplace(said.header.message_id, now);
+    while (!waiting_.empty() &&
+           now.nanoseconds - waits_since_.at(waiting_.front().header.message_id).nanoseconds > kPatience_ns)
       refuse_first("no service has published it", conclusion);
   }
 
@@ -134,6 +141,7 @@ class AcceptedModel {
   std::optional<ModelAcceptance> in_force_;
   std::deque<ModelDiscrepancy> known_;
   std::deque<ModelAcceptance> waiting_;
+  std::map<std::string, UtcTime> waits_since_;  ///< of those that wait, by message id
 };
 
 }  // namespace sealwatch

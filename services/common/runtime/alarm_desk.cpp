@@ -41,6 +41,10 @@ std::tuple<std::string, std::string, std::string> key_of(const ServiceAlarm& ala
   return {alarm.kind, alarm.asset_id, alarm.subject};
 }
 
+bool is_named(const ServiceAlarm& alarm, const std::string& asset_id, const std::string& id) {
+  return alarm.asset_id == asset_id && alarm_id(alarm) == id;
+}
+
 bool is_of_ours(const ServiceAlarm& alarm) {
   return !alarm.kind.empty() && alarm.kind.size() <= 64 && alarm.asset_id.size() <= kLongestName &&
          alarm.subject.size() <= kLongestName && alarm.text.size() <= kLongestText;
@@ -163,7 +167,13 @@ void AlarmDesk::hear(const ServiceStatus& status, Steady now, UtcTime time) {
       (void)raise(status.service, alarm, now);
   }
   // What a service has not recalled yet it does not deny.
-  if (status.alarm_count <= status.alarms.size() && status.state != kRestoring) end_untold(status, now, time);
+  if (status.alarm_count > status.alarms.size() || status.state == kRestoring) return;
+  told_all_.insert(status.service);
+  end_untold(status, now, time);
+}
+
+bool AlarmDesk::has_heard_all() const {
+  return std::ranges::all_of(options_.services, [this](const std::string& one) { return told_all_.contains(one); });
 }
 
 void AlarmDesk::end_untold(const ServiceStatus& status, Steady now, UtcTime time) {
@@ -231,10 +241,13 @@ void AlarmDesk::end_shelves(UtcTime time) {
 }
 
 AlarmDesk::Entries::iterator AlarmDesk::find(const std::string& asset_id, const std::string& id) {
-  return std::ranges::find_if(entries_, [&](const auto& one) {
-    const ServiceAlarm& alarm = one.second.kept.alarm;
-    return alarm.asset_id == asset_id && alarm_id(alarm) == id;
-  });
+  return std::ranges::find_if(entries_, [&](const auto& one) { return is_named(one.second.kept.alarm, asset_id, id); });
+}
+
+const AlarmEntry* AlarmDesk::entry_of(const std::string& asset_id, const std::string& id) const {
+  const auto found =
+      std::ranges::find_if(entries_, [&](const auto& one) { return is_named(one.second.kept.alarm, asset_id, id); });
+  return found == entries_.end() ? nullptr : &found->second.kept;
 }
 
 bool AlarmDesk::takes(const Acknowledgement& seen) const {

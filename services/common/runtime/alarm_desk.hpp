@@ -52,6 +52,11 @@ class AlarmDesk {
   /// Does what the event says, or says why not.
   [[nodiscard]] std::optional<std::string> apply(const MaintenanceEvent& event, UtcTime time);
 
+  /// As people name it; nullptr where there is none.
+  [[nodiscard]] const AlarmEntry* entry_of(const std::string& asset_id, const std::string& id) const;
+  /// Whether each service that is expected has told all of its alarms since this desk began.
+  [[nodiscard]] bool has_heard_all() const;
+
   void tell(ServiceStatus& status, UtcTime time) const;
 
   struct Changes {
@@ -87,6 +92,7 @@ class AlarmDesk {
   Entries entries_;
   std::set<Key> touched_;
   std::map<std::string, Steady> heard_;  ///< the last heartbeat of each expected service
+  std::set<std::string> told_all_;       ///< of them, those that have told all alarms since the start
 };
 
 }  // namespace sealwatch

@@ -82,7 +82,7 @@ Status LayerRunner::start() {
   const auto anchors = journal_.anchors();
   if (!anchors) return fail(anchors.error());
   for (const AuditAnchor& heard : *anchors) compared_.insert(heard.service);
-  is_new_ = *is_new && last_act_.sequence == 0;
+  is_new_ = *is_new;
   waits_for_acts_ = is_new_ && keeps_acts() && !options_.strangers.services.empty();
   started_ns_ = clock_.now().nanoseconds;
   look_at_clock();
@@ -151,8 +151,7 @@ Status LayerRunner::step(std::chrono::milliseconds timeout) {
     if (Status status = let_time_pass(); !status) return status;
     if (Status status = note_acts(); !status) return status;
     look_whether_assets_are_quiet();
-    if (resends_.empty())
-      if (Status status = publish_latest(); !status) return status;
+    if (Status status = publish_latest(); !status) return status;
     if (Status status = drop_old_samples(); !status) return status;
   }
   report_progress();
@@ -299,14 +298,15 @@ Status LayerRunner::take(Message message, const ActRecord* record) {
     }
   }
   if (!refused) admission_.note_asset(asset_of(message));
-  const bool for_desk = is_for_desk(message);
-  if (for_desk && !refused) refused = tell_desk(message);
-  InputState state = for_desk ? InputState::consumed : is_set_aside(message) ? InputState::set_aside : InputState::open;
+  const bool for_desk = is_for_desk(message, record != nullptr);
+  if (for_desk && !refused) refused = record == nullptr ? tell_desk(message) : recall_at_desk(message);
+  InputState state = is_set_aside(message) ? InputState::set_aside : InputState::open;
+  if (for_desk) state = record == nullptr || refused ? InputState::consumed : InputState::ahead;
   if (!is_listened_to(message))
     state = InputState::consumed;  // kept for those who lose it
   else if (!for_desk || desk_)
     state = note_act(message, refused, state, record);
-  if (!refused && !for_desk) keep_record(message, state == InputState::ahead);
+  if (!refused && is_to_be_kept(message, for_desk)) keep_record(message, !for_desk && state == InputState::ahead);
   if (state == InputState::open && has_no_samples_any_more(message)) state = InputState::consumed;
   const std::string asset_id = asset_of(message);
   taken_ids_[**id] = taken_.size();
@@ -314,7 +314,7 @@ Status LayerRunner::take(Message message, const ActRecord* record) {
   const auto input = std::make_shared<const Message>(without_stamps(std::move(message)));
   taken_.push_back({input, stream, state});
   if (state == InputState::awaiting) await(input, clock_.now());
-  if (state == InputState::ahead) ++acts_ahead_[asset_id];
+  if (state == InputState::ahead && !for_desk) ++acts_ahead_[asset_id];
   if (state == InputState::consumed && !refused) confirm(*input);
   if (state != InputState::open) return {};
   if (admission_.note(*input, false)) heard_of_.insert(asset_id);

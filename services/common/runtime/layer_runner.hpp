@@ -36,6 +36,7 @@
 #include "services/common/runtime/heartbeat.hpp"
 #include "services/common/runtime/latest_outputs.hpp"
 #include "services/common/runtime/outbox.hpp"
+#include "services/common/runtime/recalled_alarm_acts.hpp"
 #include "services/common/runtime/resend_queue.hpp"
 #include "services/common/runtime/retention.hpp"
 #include "services/common/runtime/stranger_watch.hpp"
@@ -223,10 +224,15 @@ class LayerRunner {
   // The states of all alarms (layer_runner_desk.cpp).
   [[nodiscard]] Status open_desk();
   void note_advice_of(const Message& output);
-  /// Whether people speak to the desk with it, not to the layer.
-  [[nodiscard]] bool is_for_desk(const Message& message) const;
+  /// Whether people speak to the desk with it, not to the layer; of what is fetched back, its alarm may not be there yet.
+  [[nodiscard]] bool is_for_desk(const Message& message, bool is_fetched_back) const;
   /// Does it where this service has the desk; why not, where it is refused.
   [[nodiscard]] std::optional<std::string> tell_desk(const Message& message);
+  /// The same, of an act that is fetched back: done once what it was said of is there.
+  [[nodiscard]] std::optional<std::string> recall_at_desk(const Message& message);
+  [[nodiscard]] Status restore_recalled_at_desk();
+  /// In the running batch: what became of those.
+  [[nodiscard]] Status answer_recalled();
   [[nodiscard]] Status keep_alarms();
   [[nodiscard]] Status let_time_pass_at_desk();
 
@@ -255,6 +261,8 @@ class LayerRunner {
   void name_tests(Message& act) const;
   /// Writes the act into the own record, in the running batch.
   void keep_record(const Message& act, bool is_ahead);
+  /// Whether an act is kept for others. To the desk it is what concerns an alarm that may still stand.
+  [[nodiscard]] bool is_to_be_kept(const Message& act, bool is_for_desk) const;
   /// Once, after an update from a version that kept no such record.
   [[nodiscard]] Status record_earlier_acts();
   /// In a retraction of many: the tests that were known then.
@@ -392,6 +400,7 @@ class LayerRunner {
   std::vector<RefusedTest> refused_tests_;                            ///< the newest last
   std::vector<std::pair<ServiceAlarm, bool>> changed_refused_tests_;  ///< not yet in the journal: whether it stands
   std::optional<AlarmDesk> desk_;
+  RecalledAlarmActs recalled_;
   ServiceStatus told_at_desk_;  ///< its part of the heartbeat
   ClockWatch clock_watch_;
   ClockReading clock_reading_;   ///< at the last look

@@ -54,8 +54,7 @@ std::string samples_of_earlier_tests(const std::string& other) {
   return "the samples of earlier tests, of which " + other + " has a record: restore a backup";
 }
 
-constexpr const char* kSaidToDesk =
-    "who acknowledged and shelved alarms, and which assets are out of service: say so again where it holds";
+constexpr const char* kEndedUnseen = "alarms that ended before anybody had acknowledged them: see the logs";
 
 /// Whether it rejects what it speaks of.
 bool rejects(const Message& message) {
@@ -140,8 +139,9 @@ bool LayerRunner::may_be_fetched_later(const Message& message) const {
 InputState LayerRunner::note_act(const Message& message, const std::optional<std::string>& refused, InputState state,
                                  const ActRecord* record) {
   const bool waits = !refused && waits_for_second(message);
-  const bool is_fetched_early = record != nullptr && !is_its_turn(message);
-  const bool is_ahead = !refused && !waits && (admission_.is_ahead(message) || is_fetched_early);
+  const bool waits_at_desk = state == InputState::ahead;
+  const bool is_fetched_early = record != nullptr && !waits_at_desk && !is_its_turn(message);
+  const bool is_ahead = waits_at_desk || (!refused && !waits && (admission_.is_ahead(message) || is_fetched_early));
   if (is_ahead && is_fetched_early) awaits_quiet_.insert(asset_of(message));
   std::string outcome = refused ? *refused : waits ? "waits for a second person" : is_ahead ? kAhead : kTaken;
   if (record != nullptr) outcome += ", fetched back from " + visible(record->header.producer);
@@ -166,7 +166,7 @@ Status LayerRunner::give_acts_ahead(const std::string& asset_id) {
     if (retraction && !admission_.may_be_given(asset_id, *retraction)) continue;
     auto act = journal_.input(act_id);
     if (!act) return fail(act.error());
-    if (!*act) continue;
+    if (!*act || is_for_desk(**act, true)) continue;
     if (!is_its_turn(**act)) {
       awaits_quiet_.insert(asset_id);
       continue;
@@ -301,7 +301,7 @@ std::optional<std::string> LayerRunner::lost_for_ever() const {
   const std::string& knows_of_tests = has_read_more_.empty() ? has_older_acts_ : has_read_more_;
   if (reads_samples() && !knows_of_tests.empty()) lost.push_back(samples_of_earlier_tests(knows_of_tests));
   if (keeps_acts() && !has_unrecorded_acts_.empty()) lost.push_back(what_people_said(has_unrecorded_acts_));
-  if (desk_ && !has_older_acts_.empty()) lost.emplace_back(kSaidToDesk);
+  if (desk_ && !has_older_acts_.empty()) lost.emplace_back(kEndedUnseen);
   if (lost.empty()) return std::nullopt;
   std::string all = lost.front();
   for (std::size_t k = 1; k < lost.size(); ++k) all += "; and for " + lost[k];
@@ -311,7 +311,7 @@ std::optional<std::string> LayerRunner::lost_for_ever() const {
 /// The neighbours' messages make the conclusions again, and their records have what people said. What nobody can give
 /// back would be missing in this service alone, and nobody would know.
 Status LayerRunner::compare_acts() {
-  if (!is_new_) return {};
+  if (!is_new_ || waits_for_acts_) return {};  // a restart before all acts are here waits for them again
   const auto what = lost_for_ever();
   if (!what && !all_heard()) return {};
   is_new_ = false;

@@ -9,14 +9,17 @@
 //   order                where the journal is new, acts come first: a replacement parts a history, which it does not do
 //                        as well once later tests were concluded from. A retraction then waits for the tests that it
 //                        means, and an acknowledgement for its advice, so that the answer is the last word again
+//   acts on alarms       the desk's service alone takes them, and the others keep its record of them. Fetched back, each
+//                        counts for what it was said of (recalled_alarm_acts.hpp)
 //
-// Not kept: what people say to the desk of alarms (layer_runner_desk.cpp).
+// Not kept: which alarms ended unseen, as nobody said anything of them.
 #include <algorithm>
 #include <deque>
 #include <iterator>
 #include <utility>
 
 #include "sealwatch/core/text.hpp"
+#include "sealwatch/message/alarm_acts.hpp"
 #include "sealwatch/message/confirmation.hpp"
 #include "sealwatch/message/outside.hpp"
 #include "sealwatch/message/retraction.hpp"
@@ -53,11 +56,10 @@ std::optional<Message> act_in(const ActRecord& record) {
   return std::nullopt;
 }
 
-/// As it came, as far as the audit trail tells it; nothing for what is of the desk, or not known any more.
+/// As it came, as far as the audit trail tells it; nothing for what is not known any more.
 std::optional<Message> act_of_trail(const OperatorAct& act) {
   if (act.kind == name_of(Topic::acknowledgement)) {
-    const std::string begin = "acknowledgement/recommendation/";
-    if (!act.subject.starts_with(begin)) return std::nullopt;
+    if (!act.subject.starts_with("acknowledgement/") || std::ranges::count(act.subject, '/') < 2) return std::nullopt;
     Acknowledgement seen;
     seen.asset_id = act.asset_id;
     seen.header.message_id = act.subject;
@@ -79,8 +81,9 @@ std::optional<Message> act_of_trail(const OperatorAct& act) {
   event.remark = act.text;
   const bool has_time = !is_replacement(event) || time_of_replacement(act.subject);
   const bool is_confirmation = act.kind == kActConfirmed || act.kind == kActRejected;
-  if (!has_time || (!is_replacement(event) && !is_retraction_kind(act.kind) && !is_confirmation)) return std::nullopt;
-  return event;
+  const bool is_known =
+      is_replacement(event) || is_retraction_kind(act.kind) || is_confirmation || is_alarm_act(act.kind);
+  return has_time && is_known ? std::optional<Message>(event) : std::nullopt;
 }
 
 }  // namespace
@@ -108,7 +111,18 @@ void LayerRunner::name_tests(Message& act) const {
 
 void LayerRunner::keep_record(const Message& act, bool is_ahead) {
   if (std::ranges::count(kSaidByPeople, topic_of(act)) == 0) return;
-  records_.emplace_back(record_of(without_stamps(act), kind_->name(), is_ahead));
+  Message kept = without_stamps(act);
+  // Of which occurrence of an alarm it was said, its time tells.
+  if (auto* const seen = std::get_if<Acknowledgement>(&kept); seen && !seen->header.event_time_known) {
+    seen->header.event_time_known = true;
+    seen->header.event_time_ns = clock_.now().nanoseconds;
+  }
+  records_.emplace_back(record_of(kept, kind_->name(), is_ahead));
+}
+
+bool LayerRunner::is_to_be_kept(const Message& act, bool is_for_desk) const {
+  const auto* const seen = std::get_if<Acknowledgement>(&act);
+  return !is_for_desk || (desk_ && (seen == nullptr || !is_advisory_id(seen->advisory_id)));
 }
 
 /// What an earlier version took stands in the audit trail, and an accepted model among the inputs that are kept.
@@ -161,7 +175,10 @@ Status LayerRunner::take_record(Message message, const StreamPosition& stream) {
   taken_.push_back({std::make_shared<const Message>(without_stamps(std::move(message))), stream, InputState::consumed});
   const auto act = refused || stream.sequence == 0 ? std::nullopt : act_in(record);
   if (!act || asset_of(*act) != record.asset_id || header_of(*act).message_id.empty()) return {};
-  return take(without_stamps(*act), &record);
+  if (desk_ || !is_for_desk(*act, true)) return take(without_stamps(*act), &record);
+  // It may have heard the act itself, but not whether the desk took it: this says so.
+  if (!admission_.refusal_of_asset(*act) && !refusal_of(*act, &record)) keep_record(*act, false);
+  return {};
 }
 
 void LayerRunner::put_in_line(Message message) {

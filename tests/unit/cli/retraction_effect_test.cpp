@@ -83,5 +83,20 @@ TEST_F(RetractionEffect, WithoutThemTheAnswerTellsWhetherAnythingChanged) {
   EXPECT_EQ(said(objection({}, life({kApril}), since("2031-01-01"))), "") << "nothing to compare with";
 }
 
+/// What was sent again to somebody else was the last that was heard right after a replay.
+TEST_F(RetractionEffect, TheAnswerIsHeldAgainstWhatStoodLastBeforeIt) {
+  KnownTests known{.life = life({kMarch})};
+  std::optional<RemainingLife> answer;
+  RemainingLife without_april = life({kMarch});
+  without_april.header.source_ids.push_back(kTaken);
+  RemainingLife later = life({kApril});
+  for (const RemainingLife& heard : {life({kMarch}), life({kMarch, kApril}), without_april, later})
+    hear(heard, kTaken, known, answer);
+  ASSERT_EQ(answer, without_april);
+  EXPECT_EQ(said(objection(known, *answer, test(kApril))), "");
+  known.life = without_april;
+  EXPECT_THAT(said(objection(known, *answer, test(kApril))), HasSubstr("changes nothing"));
+}
+
 }  // namespace
 }  // namespace sealwatch::cli

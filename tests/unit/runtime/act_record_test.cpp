@@ -6,6 +6,8 @@
 
 #include <filesystem>
 
+#include "sealwatch/message/alarm_acts.hpp"
+#include "sealwatch/message/alarm_state.hpp"
 #include "sealwatch/message/confirmation.hpp"
 #include "sealwatch/message/retracted_tests.hpp"
 #include "services/common/runtime/admission.hpp"
@@ -19,6 +21,7 @@ using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::Each;
 using ::testing::ElementsAre;
+using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
@@ -89,11 +92,16 @@ class ActRecordTest : public ::testing::Test {
     ASSERT_TRUE(health_.subscribe_service_topics());
     start_all();
   }
+  [[nodiscard]] RunnerOptions options_of(const std::string& name) const {
+    RunnerOptions options = options_;
+    if (name != "advisory_generation") options.desk.reset();
+    return options;
+  }
   void start(const std::string& name) {
     Service& service = services_[name];
     service.process = std::make_unique<Process>(
         network_, [name] { return std::make_unique<CountingLayer>(name); }, service.place.connection(), Fate(),
-        options_);
+        options_of(name));
     service.process->start();
   }
   void start_all() {
@@ -116,6 +124,8 @@ class ActRecordTest : public ::testing::Test {
     status.writer_id = "health_assessment-1";
     status.state = "running";
     status.written = {{"health_report", status.writer_id, tests_.size()}};
+    status.alarms = told_;
+    status.alarm_count = told_.size();
     EXPECT_TRUE(health_.publish(status));
     for (const BusItem& item : health_.receive(std::chrono::milliseconds(0), 1000))
       if (const auto* request = std::get_if<ResendRequest>(&item); request && request->writer_id == status.writer_id)
@@ -196,6 +206,7 @@ class ActRecordTest : public ::testing::Test {
   InMemoryBus health_{network_};
   std::map<std::string, Service> services_;
   std::vector<Message> tests_;
+  std::vector<ServiceAlarm> told_;  ///< alarms of health assessment
   bool is_health_silent_ = false;
   UtcTime now_ = TestClock().now();
 };
@@ -293,6 +304,35 @@ TEST_F(ActRecordTest, WhoSaidItAndIsStillThereChangesNothing) {
   all_take("advisory/" + header_of(said).message_id);
   EXPECT_THAT(counted("state_detection"), ElementsAre("a", "c"));
   EXPECT_THAT(audit("state_detection"), ElementsAre(HasSubstr("fetched back from"), HasSubstr("taken")));
+}
+
+/// A service that was stopped meanwhile, or has heard of one act, has not heard of all.
+TEST_F(ActRecordTest, ActsComeFirstAlsoWhereTheServiceStopsBeforeItHasThemAll) {
+  test("a", "2029-01-01");
+  test("b", "2029-02-01");
+  const Message first = retraction(kTestRetracted, "a");
+  const Message second = retraction(kTestsRetracted, "2029-02-01T00:00:00Z");
+  say(first);
+  say(second);
+  test("c", "2029-03-01");
+  stop("prognostic_assessment");
+  stop("advisory_generation");
+  lose("state_detection");
+  is_health_silent_ = true;
+  const auto longest = std::exchange(options_.longest_without_acts, std::chrono::milliseconds(0));
+  start("state_detection");
+  for (int k = 0; k < 5; ++k) step();
+  EXPECT_TRUE(InMemoryBus(network_).publish(first));
+  EXPECT_TRUE(steps_until([&] { return !audit("state_detection").empty(); }));
+  stop("state_detection");
+  options_.longest_without_acts = longest;
+  is_health_silent_ = false;
+  InMemoryBus stays(network_);
+  EXPECT_TRUE(stays.publish(second));
+  start_all();
+  all_take("advisory/health_report/c");
+  all_take("advisory/" + header_of(second).message_id);
+  EXPECT_THAT(counted("state_detection"), ElementsAre("c"));
 }
 
 /// Earlier versions kept no record for others: what their audit trail tells is written into one.
@@ -468,6 +508,157 @@ TEST_F(ActRecordTest, AFloodOfInventedOnesKeepsNoRealOneOut) {
   is_health_silent_ = false;
   all_take("advisory/" + id);
   EXPECT_THAT(counted("prognostic_assessment"), ElementsAre("a", "before"));
+}
+
+/// What people said of alarms, to the one service that keeps their states.
+class AlarmActRecordTest : public ActRecordTest {
+ protected:
+  AlarmActRecordTest() {
+    options_.desk = AlarmDesk::Options{.service = kDesk, .services = {"health_assessment"}};
+    told_ = {lost("flow"), lost("position")};
+  }
+  void SetUp() override {
+    ActRecordTest::SetUp();
+    ASSERT_TRUE(become({"sensor_lost/flow unacknowledged", "sensor_lost/position unacknowledged"}));
+  }
+  [[nodiscard]] ServiceAlarm lost(const std::string& channel) const {
+    return {.kind = "sensor_lost",
+            .asset_id = "A",
+            .subject = channel,
+            .pst_id = {},
+            .text = "flat",
+            .since_ns = now_.nanoseconds};
+  }
+  std::vector<std::string> states() {
+    std::vector<std::string> said;
+    const auto entries = services_[kDesk].process->journal().alarms();
+    for (const AlarmEntry& one : entries.value())
+      said.push_back((one.alarm.asset_id == "A" ? "" : one.alarm.asset_id + ": ") + alarm_id(one.alarm) + " " +
+                     std::string(name_of(state_of(one, now_))));
+    std::ranges::sort(said);
+    return said;
+  }
+  bool become(const std::vector<std::string>& wanted) {
+    const bool are = steps_until([&] { return states() == wanted; });
+    EXPECT_THAT(states(), ElementsAreArray(wanted));
+    return are;
+  }
+  Message seen(const std::string& alarm) {
+    now_ = add_seconds(now_, 1.0);
+    Acknowledgement said;
+    said.asset_id = "A";
+    said.advisory_id = alarm;
+    said.acknowledged_by = "M. Okoye";
+    said.header = header("acknowledgement/" + alarm + "/" + std::to_string(now_.nanoseconds), "");
+    said.header.event_time_known = true;
+    said.header.event_time_ns = now_.nanoseconds;
+    return said;
+  }
+  Message act(std::string_view kind, const std::string& asset_id, const AlarmAct& meant = {}) {
+    now_ = add_seconds(now_, 1.0);
+    MaintenanceEvent said = event(kind, alarm_act_id(asset_id, now_, meant));
+    said.asset_id = asset_id;
+    return said;
+  }
+  Message shelf(const std::string& alarm) {
+    return act(kAlarmShelved, "A", {.alarm_id = alarm, .until = add_seconds(now_, 86'400.0)});
+  }
+  /// Until the desk has taken it or refused it, and its neighbours have heard so.
+  std::string tell(const Message& said) {
+    const std::size_t before = audit(kDesk).size();
+    EXPECT_TRUE(InMemoryBus(network_).publish(said));
+    EXPECT_TRUE(steps_until([&] { return audit(kDesk).size() > before; }));
+    const auto end = std::chrono::steady_clock::now() + 3 * options_.records_wait;
+    while (std::chrono::steady_clock::now() < end) step();
+    return header_of(said).message_id;
+  }
+  /// What became of an act, by the desk's audit trail.
+  std::vector<std::string> outcomes(const std::string& id) {
+    std::vector<std::string> said;
+    for (const std::string& line : audit(kDesk))
+      if (line.starts_with(id + " ")) said.push_back(line.substr(id.size() + 1));
+    return said;
+  }
+
+  static constexpr const char* kDesk = "advisory_generation";
+};
+
+TEST_F(AlarmActRecordTest, WhatWasSaidOfAlarmsCountsAgainAfterTheJournalIsLost) {
+  const std::string acknowledged = tell(seen("sensor_lost/flow"));
+  const std::string shelved = tell(shelf("sensor_lost/position"));
+  const std::string out = tell(act(kAssetOutOfService, "B"));
+  const std::vector<std::string> before = states();
+  EXPECT_THAT(before, ElementsAre("B: out_of_service out_of_service", "sensor_lost/flow acknowledged",
+                                  "sensor_lost/position shelved"));
+  for (const std::string& name : {std::string(kDesk), kLayers[0], kLayers[1], std::string(kDesk)}) {
+    lose(name);
+    start_all();
+    ASSERT_TRUE(become(before)) << name;
+    for (int more = 0; more < 50; ++more) step();
+    EXPECT_EQ(states(), before) << name;
+  }
+  for (const std::string& id : {acknowledged, shelved, out})
+    EXPECT_THAT(outcomes(id), ElementsAre(HasSubstr("fetched back from "), "taken")) << id;
+  const auto kept = services_[kDesk].process->journal().alarms();
+  EXPECT_EQ(std::ranges::count(kept.value(), "M. Okoye", &AlarmEntry::acknowledged_by), 1);
+  for (const std::string& name : {kLayers[0], kLayers[1]})
+    EXPECT_THAT(audit(name), IsEmpty()) << "nobody said it there";
+}
+
+TEST_F(AlarmActRecordTest, WhatWasTakenBackStaysSo) {
+  tell(shelf("sensor_lost/flow"));
+  tell(act(kAlarmUnshelved, "A", {.alarm_id = "sensor_lost/flow", .until = {}}));
+  tell(act(kAssetOutOfService, "B"));
+  const std::string in = tell(act(kAssetInService, "B"));
+  lose(kDesk);
+  start_all();
+  EXPECT_TRUE(steps_until([&] { return outcomes(in).size() == 2; }));
+  EXPECT_TRUE(become({"sensor_lost/flow unacknowledged", "sensor_lost/position unacknowledged"}));
+}
+
+/// What people said of another never holds for it.
+TEST_F(AlarmActRecordTest, AnAlarmThatCameLaterIsUnseen) {
+  const std::string flow = tell(seen("sensor_lost/flow"));
+  const std::string position = tell(seen("sensor_lost/position"));
+  stop(kDesk);
+  now_ = add_seconds(now_, 60.0);
+  told_ = {lost("flow")};
+  lose(kDesk);
+  start_all();
+  EXPECT_TRUE(steps_until([&] { return outcomes(flow).size() == 2 && outcomes(position).size() == 2; }));
+  EXPECT_TRUE(become({"sensor_lost/flow unacknowledged"}));
+  EXPECT_THAT(outcomes(flow).back(), HasSubstr("it was said of an earlier alarm"));
+  EXPECT_EQ(outcomes(position).back(), "its alarm is over");
+}
+
+TEST_F(AlarmActRecordTest, AnActWaitsForItsAlarmThroughARestart) {
+  const std::string acknowledged = tell(seen("sensor_lost/flow"));
+  const std::string shelved = tell(shelf("sensor_lost/position"));
+  is_health_silent_ = true;
+  lose(kDesk);
+  start_all();
+  EXPECT_TRUE(steps_until([&] { return outcomes(acknowledged).size() + outcomes(shelved).size() == 2; }));
+  EXPECT_THAT(states(), IsEmpty());
+  stop(kDesk);
+  start_all();
+  for (int more = 0; more < 50; ++more) step();
+  is_health_silent_ = false;
+  EXPECT_TRUE(become({"sensor_lost/flow acknowledged", "sensor_lost/position shelved"}));
+  EXPECT_EQ(outcomes(acknowledged).size() + outcomes(shelved).size(), 4U);
+}
+
+/// A neighbour hears it too, and does not know that it counts for nothing.
+TEST_F(AlarmActRecordTest, WhatTheDeskRefusedIsNotFetchedBack) {
+  const std::string none = tell(shelf("sensor_lost/none"));
+  EXPECT_THAT(outcomes(none), ElementsAre(HasSubstr("there is no alarm")));
+  lose(kDesk);
+  start_all();
+  told_.push_back(lost("none"));
+  EXPECT_TRUE(become(
+      {"sensor_lost/flow unacknowledged", "sensor_lost/none unacknowledged", "sensor_lost/position unacknowledged"}));
+  const auto end = std::chrono::steady_clock::now() + 10 * options_.records_wait;
+  while (std::chrono::steady_clock::now() < end) step();
+  EXPECT_THAT(outcomes(none), IsEmpty());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "services/common/runtime/operator_acts.hpp"
+#include "services/common/runtime/recalled_alarm_acts.hpp"
 #include "tests/unit/runtime/harness.hpp"
 
 namespace sealwatch::testing {
@@ -265,6 +266,62 @@ TEST_F(Desk, StrangersFillNeitherMemoryNorHeartbeat) {
   EXPECT_LE(told.desk_count, 2 * AlarmDesk::kMostOfAKind + 1);
   EXPECT_THAT(told.desk, SizeIs(AlarmDesk::kMostTold));
   EXPECT_LT(told.desk_count, 600U);
+}
+
+/// One neighbour lacks what another has: they come in any order.
+TEST_F(Desk, OfActsThatAreFetchedBackTheLastSaidCounts) {
+  pass(seconds(2), {lost("flow")});
+  const AlarmAct shelf{.alarm_id = "sensor_lost/flow", .until = add_seconds(time_, 600.0)};
+  const AlarmAct unshelf{.alarm_id = "sensor_lost/flow", .until = {}};
+  const auto at = [&](std::string_view kind, const AlarmAct& act, double when_s) {
+    return event(kind, "A", act, add_seconds(kNoon, when_s));
+  };
+  std::vector<MaintenanceEvent> acts = {at(kAlarmShelved, shelf, -40.0), at(kAlarmUnshelved, unshelf, -30.0),
+                                        at(kAssetOutOfService, {}, -40.0), at(kAssetInService, {}, -30.0)};
+  const auto before = [](const auto& a, const auto& b) { return a.header.message_id < b.header.message_id; };
+  std::ranges::sort(acts, before);
+  do {
+    RecalledAlarmActs recalled;
+    for (const MaintenanceEvent& act : acts) {
+      recalled.add(act);
+      recalled.decide(*desk_, time_);
+    }
+    EXPECT_THAT(states(), ElementsAre("sensor_lost/flow unacknowledged"));
+    EXPECT_THAT(recalled.take_decided(), SizeIs(4));
+  } while (std::ranges::next_permutation(acts, before).found);
+}
+
+TEST_F(Desk, AShelfThatIsFetchedBackWaitsForItsAlarmToItsEnd) {
+  RecalledAlarmActs recalled;
+  recalled.add(event(kAlarmShelved, "A", {.alarm_id = "sensor_lost/flow", .until = add_seconds(time_, 60.0)}));
+  recalled.add(event(kAlarmShelved, "A", {.alarm_id = "sensor_lost/position", .until = add_seconds(time_, 60.0)}));
+  pass(seconds(20));
+  recalled.decide(*desk_, time_);
+  EXPECT_FALSE(recalled.has_decided());
+  pass(seconds(20), {lost("flow")});
+  recalled.decide(*desk_, time_);
+  EXPECT_THAT(states(), ElementsAre("sensor_lost/flow shelved"));
+  EXPECT_THAT(recalled.take_decided(), SizeIs(1));
+  pass(seconds(30), {lost("flow")});
+  recalled.decide(*desk_, time_);
+  EXPECT_THAT(recalled.take_decided().at(0).why_not.value_or(""), HasSubstr("there is no alarm"));
+}
+
+/// Who acknowledged it since is not told to be somebody else.
+TEST_F(Desk, AnAcknowledgementThatIsFetchedBackTakesNobodysPlace) {
+  pass(seconds(2), {lost("flow")});
+  acknowledge("sensor_lost/flow");
+  Acknowledgement earlier;
+  earlier.asset_id = "A";
+  earlier.advisory_id = "sensor_lost/flow";
+  earlier.acknowledged_by = "somebody else";
+  earlier.header.event_time_known = true;
+  earlier.header.event_time_ns = 2;
+  RecalledAlarmActs recalled;
+  recalled.add(earlier);
+  recalled.decide(*desk_, time_);
+  EXPECT_EQ(recalled.take_decided().at(0).why_not, "it is acknowledged already, by M. Okoye");
+  EXPECT_EQ(desk_->entry_of("A", "sensor_lost/flow")->acknowledged_by, "M. Okoye");
 }
 
 TEST(AlarmActs, SayInTheirIdWhatTheyMean) {

@@ -183,6 +183,47 @@ TEST_F(RunnerTest, ServesALongRequestInTurnsWhileItGoesOnReceiving) {
   EXPECT_TRUE(step_until(all_came, [&] { step(*process, 1); })) << "it rests for as long as it sent, no longer";
 }
 
+/// Of which each message takes its time, as where a reader is slow.
+class SlowBus final : public Bus {
+ public:
+  explicit SlowBus(std::shared_ptr<InMemoryNetwork> network) : bus_(std::move(network)) {}
+  Status subscribe(std::span<const Topic> topics) override { return bus_.subscribe(topics); }
+  Status subscribe_service_topics() override { return bus_.subscribe_service_topics(); }
+  Status publish(const Message& message) override {
+    std::this_thread::sleep_for(milliseconds(1));
+    return bus_.publish(message);
+  }
+  Status publish(const ServiceStatus& status) override { return bus_.publish(status); }
+  Status publish(const ResendRequest& request) override { return bus_.publish(request); }
+  std::vector<BusItem> receive(milliseconds timeout, std::size_t most) override { return bus_.receive(timeout, most); }
+  void wake() override { bus_.wake(); }
+
+ private:
+  InMemoryBus bus_;
+};
+
+/// Who joins meanwhile, a command of an operator, would judge by what was so a hundred tests ago.
+TEST_F(RunnerTest, TheLatestIsTheLastWordAlsoWhileALongRequestIsServed) {
+  SlowBus bus(network_);
+  InMemoryBus heartbeat_bus(network_);
+  TestClock clock;
+  auto journal = Journal::open(place_.connection(), "data_manipulation");
+  LayerRunner runner([](const std::string&) { return cutting(); }, bus, heartbeat_bus, *journal, clock, fast_options());
+  ASSERT_TRUE(runner.start());
+  const auto step = [&] { ASSERT_TRUE(runner.step(milliseconds(1))); };
+  Feeder feeder(network_, blocks_of_tests(100, {"A"}));
+  feeder.send(200);
+  const auto all_came = [&] { return listener_.sequences(Topic::test_features).size() >= 100; };
+  ASSERT_TRUE(step_until(all_came, step));
+  listener_.messages.clear();
+  EXPECT_TRUE(listener_.bus().publish(ResendRequest{journal->writer_id(), "test_features", 1, 99, "l"}));
+  EXPECT_TRUE(step_until([&] { return listener_.sequences(Topic::test_features).size() >= 99; },
+                         [&] {
+                           step();
+                           EXPECT_THAT(Listener(network_).sequences(Topic::test_features), ElementsAre(100));
+                         }));
+}
+
 TEST_F(RunnerTest, AGapIsFilledBeforeAnythingBeyondItIsConcluded) {
   auto process = joiner();
   send(features("p3", 3));

@@ -200,10 +200,24 @@ TEST(AcceptedModel, ThatComesBeforeItsDiscrepancyWaitsForItAndNotForEver) {
   ModelAcceptance invented = acceptance("invented", 2);
   invented.header.event_time_ns = synthetic::month(4).nanoseconds;
   one.take(invented);
+  one.model.tick(synthetic::month(4), one.conclusion);
   one.model.tick(add_seconds(synthetic::month(4), 3600.0), one.conclusion);
   EXPECT_EQ(one.refused(), "");
   one.model.tick(add_seconds(synthetic::month(4), 3601.0), one.conclusion);
   EXPECT_EQ(one.refused(), "accepts 'invented', and no service has published it");
+  EXPECT_EQ(one.model.discrepancy_id(), "D1");
+}
+
+/// It is fetched back after the loss of a journal, and health assessment analyses those tests again or is down.
+TEST(AcceptedModel, ThatWasSaidLongAgoWaitsAsLongAsOneOfToday) {
+  Answered one;
+  ModelAcceptance said = acceptance("D1", 1);
+  said.header.event_time_ns = synthetic::month(4).nanoseconds;
+  one.take(said);
+  one.model.tick(synthetic::month(40), one.conclusion);
+  one.model.tick(add_seconds(synthetic::month(40), 3600.0), one.conclusion);
+  EXPECT_EQ(one.refused(), "");
+  one.take(discrepancy("D1"));
   EXPECT_EQ(one.model.discrepancy_id(), "D1");
 }
 

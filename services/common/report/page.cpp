@@ -94,6 +94,49 @@ svg[role]{width:100%}svg text{font-size:12px}}
 /// What a drawing as a file of its own needs.
 constexpr std::string_view kOnScreen = kStyle.substr(0, kStyle.find("@media print"));
 
+/// The light colour of a variable of the style sheet; empty: it is no colour.
+std::string_view light_colour(std::string_view name) {
+  const std::string declared = std::string("--").append(name).append(":");
+  const std::string_view light = kStyle.substr(0, kStyle.find("@media"));
+  const std::size_t at = light.find(declared);
+  if (at == std::string_view::npos) return {};
+  const std::string_view value = light.substr(at + declared.size());
+  return value.substr(0, value.find_first_of(";}"));
+}
+
+/// `text` with the light colour before each declaration that takes it from a variable: many viewers of SVG know no
+/// variables and would draw in black.
+std::string with_plain_colours(std::string_view text) {
+  constexpr std::string_view kVariable = ":var(--";
+  std::string plain;
+  for (std::size_t at = text.find(kVariable); at != std::string_view::npos; at = text.find(kVariable)) {
+    const std::size_t property = text.substr(0, at).find_last_of("{;\"") + 1;
+    const std::size_t name = at + kVariable.size();
+    const std::size_t end = text.find(')', name);
+    const std::string_view colour = light_colour(text.substr(name, end - name));
+    plain.append(text.substr(0, property));
+    if (!colour.empty() && !text.substr(property).starts_with("--"))
+      plain.append(text.substr(property, at - property)).append(":").append(colour).append(";");
+    plain.append(text.substr(property, end - property));
+    text.remove_prefix(end);
+  }
+  return plain.append(text);
+}
+
+/// What each ink colours, without the variable `--ink`.
+std::string inks() {
+  constexpr std::string_view kInk = "{--ink:var(--";
+  std::string rules;
+  for (std::size_t at = kOnScreen.find(kInk); at != std::string_view::npos; at = kOnScreen.find(kInk, at + 1)) {
+    const std::size_t dot = kOnScreen.rfind('.', at);
+    const std::string ink(kOnScreen.substr(dot, at - dot));
+    const std::size_t name = at + kInk.size();
+    const std::string colour = "var(--" + std::string(kOnScreen.substr(name, kOnScreen.find(')', name) - name)) + ")}";
+    rules += ink + ".stroke{stroke:" + colour + ink + ".fill," + ink + ".area{fill:" + colour + "\n";
+  }
+  return rules;
+}
+
 /// What belongs on paper is opened for printing, and closed again; what its reader opened is printed as well.
 constexpr std::string_view kScript =
     "let opened=[];"
@@ -163,10 +206,11 @@ std::string html_page(std::string_view title, std::string_view body) {
 
 std::string standalone_svg(std::string_view title, int width, int height, std::string_view body) {
   const std::string size = std::to_string(width) + " " + std::to_string(height);
-  return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + std::to_string(width) + "\" height=\"" +
-         std::to_string(height) + "\" viewBox=\"0 0 " + size + "\">\n<title>" + escaped(title) + "</title>\n<style>" +
-         std::string(kOnScreen) + "</style>\n<rect width=\"100%\" height=\"100%\" style=\"fill:var(--page)\"/>\n" +
-         std::string(body) + "</svg>\n";
+  return with_plain_colours("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + std::to_string(width) +
+                            "\" height=\"" + std::to_string(height) + "\" viewBox=\"0 0 " + size + "\">\n<title>" +
+                            escaped(title) + "</title>\n<style>" + std::string(kOnScreen) + inks() +
+                            "</style>\n<rect width=\"100%\" height=\"100%\" style=\"fill:var(--page)\"/>\n" +
+                            std::string(body) + "</svg>\n");
 }
 
 std::string section(std::string_view title, std::string_view body) {

@@ -107,8 +107,8 @@ std::optional<AssetConfig> asset_in_file(const std::string& file) {
   complain(Error{.file = {},
                  .place = "--asset",
                  .value = file,
-                 .rule = "wants an asset file, and '" + file + "' is none",
-                 .advice = "for example --asset config/assets/xt03-mv2.yaml"});
+                 .rule = "is not a file",
+                 .advice = "give an asset file, for example --asset config/assets/xt03-mv2.yaml"});
   return std::nullopt;
 }
 

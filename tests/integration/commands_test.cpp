@@ -272,10 +272,13 @@ TEST_F(Commands, BadInputNamesFileAndPlaceAndExitsWithTwo) {
               HasSubstr("--speed"));
   EXPECT_THAT(refused({"sealwatch", "replay", "--config", config(), "--offline", "--with-services", text_in_number}),
               ::testing::AllOf(HasSubstr("--with-services"), HasSubstr("--offline")));
+  EXPECT_THAT(
+      refused({"sealwatch", "replay", "--config", config(), "--offline", "--state", folder_.string(), text_in_number}),
+      ::testing::AllOf(HasSubstr("--state"), HasSubstr("--with-services")));
   EXPECT_THAT(refused({"sealwatch", "watch", "--config", config(), "--asset", "XT03-MV3"}),
               ::testing::AllOf(HasSubstr("is not a configured asset"), HasSubstr("did you mean 'XT03-MV2'?")));
   EXPECT_THAT(refused({"sealwatch", "fit", "--asset", "XT03-MV2", text_in_number}),
-              HasSubstr("wants an asset file, and 'XT03-MV2' is none; for example --asset config/assets/"));
+              HasSubstr("takes an asset file, and there is no file 'XT03-MV2'; for example --asset config/assets/"));
   for (const char* no_file : {"/dev/zero", "/dev/tty", "/tmp"})
     EXPECT_THAT(refused({"sealwatch", "fit", "--asset", no_file, text_in_number}),
                 ::testing::AllOf(HasSubstr(std::string(no_file) + ": is a d"), HasSubstr("give a file")));

@@ -43,7 +43,7 @@ ul,ol{margin:.3rem 0 .8rem;padding-left:1.2rem;max-width:80ch}li{margin:.2rem 0}
 code,.law{font-family:ui-monospace,"DejaVu Sans Mono",monospace;font-size:.92em}
 .law{display:inline-block;background:var(--soft);padding:.3rem .6rem;border-radius:.3rem}
 .banner{border-left:.45rem solid var(--muted);background:var(--soft);padding:.8rem 1.1rem;margin:.9rem 0 1.1rem;border-radius:.2rem}
-.banner p{font-size:1.08rem;margin:.2rem 0}.banner.good{border-color:var(--good)}.banner.bad{border-color:var(--second)}
+.banner p{font-size:1.08rem;margin:.2rem 0;max-width:100ch}.banner.good{border-color:var(--good)}.banner.bad{border-color:var(--second)}
 .banner.warn{border-color:var(--warn)}.verdict{font-weight:700;font-size:1.15rem}
 .figures{display:flex;flex-wrap:wrap;gap:.6rem 2.2rem;margin:.7rem 0}.figures div{min-width:8rem}
 .figures b{display:block;font-size:1.2rem}.figures span{color:var(--muted);font-size:.86rem}.figures b span{color:inherit;font-size:inherit}

@@ -180,7 +180,7 @@ int run_show(const ShowOptions& options) {
   if (options.csv.empty() && !options.json)
     std::printf("(sealwatch show ID opens each of them; --json: all it says; --csv FILE: the waveform of the test)\n");
   if (!options.csv.empty() && !options.json)
-    std::printf("in %s: the waveform of the test, as all layers used it\n", options.csv.c_str());
+    std::printf("wrote %s: the waveform of the test, as all layers used it\n", options.csv.c_str());
   return kOk;
 }
 

@@ -154,7 +154,7 @@ std::optional<std::string> asset_id_in(StateJournals& journals, const std::strin
                  .value = given,
                  .rule = tested->empty() ? "no test of any asset has been concluded here"
                          : given.empty() ? "must say which asset is meant"
-                                         : "is no asset that has been tested here",
+                                         : "is not an asset that has been tested here",
                  .advice = tested->empty() ? "replay its recordings first" : suggest(given, *tested)});
   return std::nullopt;
 }

@@ -445,7 +445,7 @@ TEST_F(Commands, ReplayWritesThePageOfTheForecastThatItShows) {
   command.insert(command.end(), recordings().begin(), recordings().end());
   const Finished replay = run(command);
   ASSERT_EQ(replay.status, 0) << replay.output;
-  EXPECT_THAT(replay.output, HasSubstr("in " + page));
+  EXPECT_THAT(replay.output, HasSubstr("wrote " + page));
   std::ifstream lives(folder_ / "remaining_life.jsonl");
   std::string last;
   for (std::string line; std::getline(lives, line);) last = line;

@@ -193,7 +193,7 @@ std::vector<std::string> reasons_of_dates(const Recommendation& recommendation, 
   if (recommendation.latest_by && *recommendation.latest_by < work)
     reasons.push_back("latest by " + format_date(*recommendation.latest_by) + ": " +
                       text::in_months(booking_lead_time_months(site)) + " before the work by " + format_date(work) +
-                      ", the time it takes to get a vessel");
+                      ", the booking lead time of a vessel");
   if (work == in_force.replace_by && verdict.replace_by && *verdict.replace_by != work)
     reasons.push_back("work by " + format_date(work) + " is held although this test by itself says " +
                       format_date(*verdict.replace_by) + ": the date moves earlier when " +

@@ -82,7 +82,7 @@ Error AlarmsListed::unknown(const std::string& asset_id, const std::string& id) 
   return Error{.file = {},
                .place = "alarm",
                .value = id,
-               .rule = std::string("is no alarm of ").append(asset.empty() ? "no asset" : asset),
+               .rule = std::string("is not an alarm of ").append(asset.empty() ? "no asset" : asset),
                .advice = !heard          ? "advisory_generation, which keeps the alarms, is not heard"
                          : known.empty() ? "there is none; `sealwatch status --json` shows all, with their ids"
                                          : suggest(id, known)};

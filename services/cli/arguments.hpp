@@ -23,7 +23,7 @@ inline std::string a_number(const std::string& text) {
 inline std::string an_asset_file(const std::string& text) {
   std::error_code none;
   if (std::filesystem::exists(text, none)) return {};
-  return "wants an asset file, and '" + text + "' is none; for example --asset config/assets/xt03-mv2.yaml";
+  return "takes an asset file, and there is no file '" + text + "'; for example --asset config/assets/xt03-mv2.yaml";
 }
 
 }  // namespace sealwatch::cli

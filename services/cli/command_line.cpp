@@ -21,7 +21,12 @@ CommandLine::CommandLine()
   app_.set_version_flag("--version",
                         std::string("sealwatch " SEALWATCH_VERSION " (").append(build_version()).append(")"));
   app_.require_subcommand(1);
-  app_.footer(std::string("First steps: sealwatch replay --with-services RECORDING.csv...\n") + kExitStatus);
+  app_.footer(
+      "First steps (docs/tutorial.md):\n"
+      "  sealwatch simulate --asset config/assets/xt03-mv2.yaml --out recordings\n"
+      "  sealwatch fit --asset config/assets/xt03-mv2.yaml recordings/*.csv\n"
+      "  sealwatch COMMAND --help\n" +
+      std::string(kExitStatus));
   for (const auto add : {&add_analysis, &add_services, &add_operation, &add_maintenance}) add(*this);
 }
 
@@ -64,6 +69,10 @@ void CommandLine::add_config(CLI::App* subcommand, std::string& config) {
   config = default_config();
   subcommand->add_option("--config", config, "configuration file or directory ($SEALWATCH_CONFIG)")
       ->capture_default_str();
+}
+
+void CommandLine::one_means(CLI::App* subcommand, const std::string& meaning) {
+  subcommand->footer(subcommand->get_footer() + " Here 1 means: " + meaning + ".");
 }
 
 void CommandLine::add_map(CLI::App* subcommand, std::string& map_file) {

@@ -28,6 +28,8 @@ class CommandLine {
   void choose(std::function<int()> run) { chosen_ = std::move(run); }
 
   static void add_config(CLI::App* subcommand, std::string& config);
+  /// Says in the command's help what its exit status 1 means.
+  static void one_means(CLI::App* subcommand, const std::string& meaning);
   /// What every command that reads recordings takes.
   static void add_map(CLI::App* subcommand, std::string& map_file);
 

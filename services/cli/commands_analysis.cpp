@@ -44,7 +44,7 @@ void add_simulate(CommandLine& line) {
       ->check(a_number)
       ->capture_default_str();
   simulate->add_flag("--ageing", options->ageing,
-                     "let what wears age month by month until it fails or the months are over");
+                     "age the wearing part month by month, until it fails or the last of --months");
   simulate->add_option("--missing", options->missing_share, "share of months without a test")
       ->check(CLI::Range(0.0, 0.9))
       ->check(a_number)
@@ -63,9 +63,10 @@ void add_simulate(CommandLine& line) {
 
 void add_fit(CommandLine& line) {
   const auto options = std::make_shared<FitOptions>();
-  CLI::App* fit = line.command("fit", "estimate parameters from recorded tests (gray-box PEM)",
+  CLI::App* fit = line.command("fit", "estimate parameters from recorded tests (by prediction-error minimisation)",
                                "sealwatch fit --asset config/assets/xt03-mv2.yaml 2016-03.csv --json",
                                [options] { return run_fit(*options); });
+  CommandLine::one_means(fit, "the fit is not admissible, and says why");
   fit->add_option("--asset", options->asset_file, "asset file")->required()->check(an_asset_file, "FILE");
   fit->add_option("recordings", options->recordings, "recordings, fitted jointly (CSV or MAT)")->required();
   CommandLine::add_map(fit, options->map_file);
@@ -84,12 +85,12 @@ void add_validate(CommandLine& line) {
                    "sealwatch validate --asset config/assets/bench_eha.yaml stroke1.csv stroke2.csv --out validation\n"
                    "  sealwatch validate --simulated sim.csv recorded.csv --page trace.html",
                    [options] { return run_validate(*options); });
+  CommandLine::one_means(validate, "simulation and recording differ");
   validate->add_option("--asset", options->asset_file, "asset file")->check(an_asset_file, "FILE");
   validate->add_option("recordings", options->recordings, "recordings (CSV or MAT)")->required();
   validate->add_option("--out", options->directory, "directory for the report (made if absent)");
   CLI::Option* simulated = validate->add_option(
-      "--simulated", options->simulated,
-      "trace of your own simulation, to compare with one recording without a model (exit status 1: they differ)");
+      "--simulated", options->simulated, "trace of your own simulation, to compare with one recording without a model");
   validate->add_option("--page", options->page, "with --simulated: HTML file to write")->needs(simulated);
   validate
       ->add_option("--input", options->inputs,
@@ -107,6 +108,7 @@ void add_explain(CommandLine& line) {
       line.command("explain", "find, name and prove physics that the simulation lacks",
                    "sealwatch explain --asset asset.yaml --fit fit_*.csv --holdout holdout_*.csv --out found",
                    [options] { return run_explain(*options); });
+  CommandLine::one_means(explain, "the verdict is undetermined");
   explain->add_option("--asset", options->asset_file, "asset file")->required()->check(an_asset_file, "FILE");
   explain->add_option("--fit", options->fit, "recordings to fit: tests that differ in load, speed or profile")
       ->required();
@@ -215,7 +217,7 @@ void add_plant(CommandLine& line) {
 
 void add_laws(CommandLine& line) {
   const auto options = std::make_shared<LawsOptions>();
-  CLI::App* laws = line.command("laws", "list the catalogue of physics that explain searches",
+  CLI::App* laws = line.command("laws", "list the laws of physics that explain tries",
                                 "sealwatch laws\n  sealwatch laws piston\n  sealwatch laws coulomb_friction --json",
                                 [options] { return run_laws(*options); });
   laws->add_option("asked", options->asked, "a law's id, an element of a plant, or a kind of site (default: all)");

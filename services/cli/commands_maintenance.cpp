@@ -21,7 +21,7 @@ void add_quarantine(CommandLine& line) {
   CLI::App* list = line.nested(*quarantine, "list", "list what is in quarantine, since when and why",
                                "sealwatch quarantine list --state /var/lib/sealwatch",
                                [options] { return run_quarantine_list(*options); });
-  list->footer(list->get_footer() + " Here 1 means that something is in quarantine.");
+  CommandLine::one_means(list, "something is in quarantine");
   list->add_flag("--all", options->all, "also show past retries and who requested them");
   list->add_flag("--json", options->json, "machine-readable result (schema sealwatch.quarantine/1)");
   CLI::App* retry = line.nested(

@@ -15,7 +15,9 @@ void add_replay(CommandLine& line) {
       line.command("replay", "play recorded tests through the services, or --offline in process",
                    "sealwatch replay --with-services recordings/*.csv", [options] { return run_replay(*options); });
   CommandLine::add_config(replay, options->config);
-  replay->add_option("recordings", options->recordings, "recordings in the order of the tests (CSV or MAT)")
+  replay
+      ->add_option("recordings", options->recordings,
+                   "recordings (CSV or MAT), played in the order of their start times")
       ->required();
   replay
       ->add_option("--speed", options->speed,
@@ -31,10 +33,13 @@ void add_replay(CommandLine& line) {
   replay->add_option("--page", options->page,
                      "HTML file to write at the end: forecast of each asset, history, decision, reasons");
   replay->add_flag("--offline", options->offline, "run the same layers in this process, without DDS and services");
-  replay->add_flag("--with-services", options->with_services, "run the six services for the duration of the replay")
-      ->excludes("--offline");
-  replay->add_option("--state", options->state_directory,
-                     "state directory of those services instead of the configuration's");
+  CLI::Option* with_services =
+      replay->add_flag("--with-services", options->with_services, "run the six services for the duration of the replay")
+          ->excludes("--offline");
+  replay
+      ->add_option("--state", options->state_directory,
+                   "state directory of those services instead of the configuration's")
+      ->needs(with_services);
   replay->add_flag("--json", options->json, "advisories and the last forecasts as JSON lines on standard output");
   replay->add_flag("--quiet", options->quiet, "only the final screen");
 }
@@ -73,6 +78,7 @@ void add_status(CommandLine& line) {
   const auto options = std::make_shared<StatusOptions>();
   CLI::App* status = line.command("status", "show the services' state and the latest advice", "sealwatch status",
                                   [options] { return run_status(*options); });
+  CommandLine::one_means(status, "a service, an asset or an alarm needs attention");
   CommandLine::add_config(status, options->config);
   status->add_option("--seconds", options->seconds, "how long to listen")
       ->check(CLI::Range(0.5, 60.0))

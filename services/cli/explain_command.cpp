@@ -78,7 +78,7 @@ class Directory {
       return fail(Error{.file = name_,
                         .place = "--out",
                         .value = {},
-                        .rule = "is no directory and cannot be made",
+                        .rule = "is not a directory and cannot be made",
                         .advice = error.message()});
     return {};
   }

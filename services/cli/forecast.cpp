@@ -116,7 +116,8 @@ int run_forecast(const ForecastOptions& options) {
       return kBadInput;
     }
   options.json ? print_json(*question, answer, decision) : print_text(*question, answer, decision);
-  if (!options.page.empty() && !options.json) std::printf("in %s: all of it with plots\n", options.page.c_str());
+  if (!options.page.empty() && !options.json)
+    std::printf("wrote %s: the forecast as a page for a browser\n", options.page.c_str());
   const bool any = std::any_of(answer.forecasts.begin(), answer.forecasts.end(),
                                [](const Forecast& forecast) { return forecast.state == ForecastState::ok; });
   return any ? kOk : kAnswerIsNo;

@@ -107,8 +107,8 @@ std::optional<AssetConfig> asset_in_file(const std::string& file) {
   complain(Error{.file = {},
                  .place = "--asset",
                  .value = file,
-                 .rule = "wants an asset file, and '" + file + "' is none",
-                 .advice = "for example --asset config/assets/xt03-mv2.yaml"});
+                 .rule = "is not a file",
+                 .advice = "give an asset file, for example --asset config/assets/xt03-mv2.yaml"});
   return std::nullopt;
 }
 
@@ -154,7 +154,7 @@ std::optional<std::string> asset_id_in(StateJournals& journals, const std::strin
                  .value = given,
                  .rule = tested->empty() ? "no test of any asset has been concluded here"
                          : given.empty() ? "must say which asset is meant"
-                                         : "is no asset that has been tested here",
+                                         : "is not an asset that has been tested here",
                  .advice = tested->empty() ? "replay its recordings first" : suggest(given, *tested)});
   return std::nullopt;
 }

@@ -95,7 +95,7 @@ std::string forecast_table(const std::vector<Forecast>& forecasts) {
   };
   const bool lines = std::ranges::any_of(forecasts, is_line);
   text += std::string("                   (months from the last test; * primary") +
-          (lines ? "; ols: a straight line, whose own interval is too narrow for what ages)\n" : ")\n");
+          (lines ? "; ols: a straight line; ageing is curved, so its interval is too narrow)\n" : ")\n");
   return text + failure_chart(forecasts.front().failure_probability);
 }
 

@@ -75,7 +75,7 @@ Result<RawSamples> block_of(const std::string& line) {
     return fail(Error{.file = {},
                       .place = {},
                       .value = word,
-                      .rule = "is no number in JSON",
+                      .rule = "is not a number in JSON",
                       .advice = R"(write "nan", "inf" or "-inf", in quotes)"});
   if (!whole.is_object() || !whole.contains("topic") || !whole.contains("message"))
     return fail(Error{.file = {},

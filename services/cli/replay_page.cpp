@@ -79,7 +79,7 @@ int write_replay_page(const ReplayOptions& options, const Configuration& configu
     complain(written.error());
     return kBadInput;
   }
-  if (!options.json) std::printf("\nin %s: the forecast with plots, for a browser\n", options.page.c_str());
+  if (!options.json) std::printf("\nwrote %s: the forecast as a page for a browser\n", options.page.c_str());
   return kOk;
 }
 

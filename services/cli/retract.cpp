@@ -51,7 +51,7 @@ std::optional<MaintenanceEvent> event_of(const RetractOptions& options) {
   complain(Error{.file = {},
                  .place = "--withdraw",
                  .value = what,
-                 .rule = "is no retraction and no replacement of asset " + options.asset_id,
+                 .rule = "is neither a retraction nor a replacement of asset " + options.asset_id,
                  .advice = "give the id printed by sealwatch retract or replaced, or shown by sealwatch audit"});
   return std::nullopt;
 }

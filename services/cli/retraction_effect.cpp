@@ -146,12 +146,14 @@ KnownTests known_tests(Session& session, const RetractOptions& options) {
 std::optional<Error> objection(const KnownTests& known, const RetractOptions& options) {
   const std::string begin = begin_of_ids(options.asset_id);
   if (!options.pst_id.empty() && !options.pst_id.starts_with(begin))
-    return error_about(known, options, "is no test of " + options.asset_id + ", whose ids begin with '" + begin + "'");
+    return error_about(known, options,
+                       "is not a test of " + options.asset_id + ", whose ids begin with '" + begin + "'");
   if (!known.complete) return std::nullopt;
   if (!options.pst_id.empty() && !known.tests.contains(options.pst_id))
-    return error_about(known, options, "is no test of " + options.asset_id + " that the services know");
+    return error_about(known, options, "is not a test of " + options.asset_id + " that the services know");
   if (!options.withdraw.empty() && !known.in_force.contains(options.withdraw) && !may_be_an_act(options))
-    return error_about(known, options, "is no retraction and no replacement of " + options.asset_id + " in force");
+    return error_about(known, options,
+                       "is neither a retraction nor a replacement of " + options.asset_id + " in force");
   return std::nullopt;
 }
 

@@ -72,7 +72,7 @@ Error not_found(const std::string& name, bool received, const std::string& advic
     error.rule = "came from outside: of such messages the id is kept, not what they said";
     error.advice = "open what was concluded from it";
   } else {
-    error.rule = journals.unread().empty() ? "is no message, test or asset of these journals"
+    error.rule = journals.unread().empty() ? "is not a message, test or asset in these journals"
                                            : "is in none of the journals that could be looked into";
   }
   if (!received)
@@ -180,7 +180,7 @@ int run_show(const ShowOptions& options) {
   if (options.csv.empty() && !options.json)
     std::printf("(sealwatch show ID opens each of them; --json: all it says; --csv FILE: the waveform of the test)\n");
   if (!options.csv.empty() && !options.json)
-    std::printf("in %s: the waveform of the test, as all layers used it\n", options.csv.c_str());
+    std::printf("wrote %s: the waveform of the test, as all layers used it\n", options.csv.c_str());
   return kOk;
 }
 

@@ -48,8 +48,8 @@ std::string alteration_table(const std::vector<Alteration>& alterations) {
 }
 
 std::string channel_part(const trace::TraceComparison& comparison, const ChannelComparison& channel) {
-  std::string body = report::paragraph((channel.differs ? "Differs beyond noise" : "No difference beyond noise") +
-                                       std::string(" (p ") + text::p_value_text(channel.p_value) +
+  const std::string finding = channel.differs ? "Differs beyond noise" : "No difference beyond noise";
+  std::string body = report::paragraph(finding + std::string(" (p ") + text::p_value_text(channel.p_value) +
                                        "): root mean square " + text::readable(channel.rms, channel.unit) + ", noise " +
                                        text::readable(channel.noise_std, channel.unit) + " with " +
                                        text::number_text(channel.effective_samples) + " effective samples.");
@@ -57,6 +57,7 @@ std::string channel_part(const trace::TraceComparison& comparison, const Channel
   for (const report::Plot& plot : {course(comparison, channel), difference(comparison, channel)})
     body.append("<div>").append(report::to_svg(plot)).append("</div>");
   body += "</div>";
+  if (!channel.differs) return report::folded_section(text::in_words(channel.name), "no difference beyond noise", body);
   report::Table regimes({"regime", ">share of the time", ">rms of the difference", ">share of the misfit"});
   for (const trace::RegimeMisfit& regime : channel.regimes)
     regimes.row({regime.name, text::percent_text(regime.time_share), text::readable(regime.rms, channel.unit),
@@ -76,9 +77,12 @@ std::string trace_page(const trace::TraceComparison& comparison, const std::stri
   body.append("<div class=\"banner ").append(comparison.consistent ? "good" : "bad").append("\"><p class=\"verdict\">");
   body.append(report::escaped(trace_summary(comparison))).append("</p></div>");
   body += report::paragraph(trace_limit(), "muted");
-  for (const ChannelComparison& channel : comparison.channels) body += channel_part(comparison, channel);
-  if (!comparison.common.empty())
-    body += report::section("One cause for all channels", alteration_table(comparison.common));
+  for (const bool differs : {true, false}) {
+    for (const ChannelComparison& channel : comparison.channels)
+      if (channel.differs == differs) body += channel_part(comparison, channel);
+    if (differs && !comparison.common.empty())
+      body += report::section("One cause for all channels", alteration_table(comparison.common));
+  }
   return report::html_page("Simulated trace against recording", body);
 }
 

@@ -62,7 +62,8 @@ void print_text(const AssetConfig& asset, const ModelValidation& validation, con
                   std::filesystem::path(recording.recording).filename().string().c_str(), channel.fit.channel.c_str(),
                   channel.fit.nrmse_percent, channel.fit.noise_normalised_rms, channel.fit.whiteness_p,
                   channel.fit.independence_p);
-  std::printf("in %s: report.html, validation.json\n", directory.c_str());
+  if (const std::string next = next_step(validation); !next.empty()) std::printf("%s\n", next.c_str());
+  std::printf("wrote report.html and validation.json to %s\n", directory.c_str());
 }
 
 Status write_text(const std::filesystem::path& file, const std::string& text) {

@@ -107,15 +107,24 @@ std::string verdict(const ModelValidation& validation) {
 }  // namespace
 
 const char* verdict_in_words(const ModelValidation& validation) {
-  if (!validation.reasons.empty()) return "the simulation is not what was recorded";
+  if (!validation.reasons.empty()) return "the simulation differs from the recordings";
   return validation.remarks.empty()
              ? "the simulation agrees with the recordings within their noise"
              : "no channel misfits by more than 3 times its noise, but what is left is more than noise";
 }
 
+const char* next_step(const ModelValidation& validation) {
+  if (validation.reasons.empty() && validation.remarks.empty()) return "";
+  return validation.fitted
+             ? "Run sealwatch explain on several different tests: it names what the model lacks."
+             : "Add --fit to estimate the free parameters. What they cannot explain, sealwatch explain names.";
+}
+
 std::string validation_page(const AssetConfig& asset, const ModelValidation& validation) {
   std::string body = "<h1>Model " + report::escaped(asset.model) + " against recordings of " +
                      report::escaped(asset.asset_id) + "</h1>" + verdict(validation);
+  if (const std::string next = next_step(validation); !next.empty())
+    body += "<div class=\"steps\"><h2>What to do next</h2>" + report::paragraph(next) + "</div>";
   body += report::paragraph(validation.fitted
                                 ? "Parameters were estimated from these recordings, all together."
                                 : "Parameters are those of the asset file; of each recording only the load and the "

@@ -20,11 +20,17 @@ namespace {
 
 constexpr std::size_t kWidth = 110;
 constexpr std::size_t kAlterationsShown = 6;
+constexpr double kShareShown = 0.005;  ///< what removes less explains nothing
 
 void print_alterations(const std::vector<trace::Alteration>& alterations) {
-  for (std::size_t k = 0; k < std::min(alterations.size(), kAlterationsShown); ++k)
-    std::printf("    %6s  %-12s %s\n", text::percent_text(alterations[k].removed_share).c_str(),
-                alterations[k].would_do ? "explains it" : "", alteration_text(alterations[k]).c_str());
+  std::size_t shown = 0;
+  for (const trace::Alteration& alteration : alterations) {
+    if (alteration.removed_share < kShareShown && !alteration.would_do) continue;
+    if (++shown > kAlterationsShown) break;
+    std::printf("    %6s  %-12s %s\n", text::percent_text(alteration.removed_share).c_str(),
+                alteration.would_do ? "explains it" : "", alteration_text(alteration).c_str());
+  }
+  if (shown == 0) std::printf("      nothing that was tried removes any of it\n");
 }
 
 void print_channel(const trace::ChannelComparison& channel) {

@@ -93,7 +93,7 @@ std::optional<Series> OpenTest::accept(const Series& channel, const std::vector<
   if (known && !channel.unit.empty() && channel.unit != known->unit) {
     const Result<UnitConversion> found = find_unit(channel.unit);
     if (!found || found->si_unit != known->unit) {
-      left_out_[channel.name] = std::string(kLeftOut) + "unit '" + channel.unit + "' is no unit of this channel";
+      left_out_[channel.name] = std::string(kLeftOut) + "unit '" + channel.unit + "' is not a unit of this channel";
       return std::nullopt;
     }
     conversion = *found;

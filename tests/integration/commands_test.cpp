@@ -272,10 +272,13 @@ TEST_F(Commands, BadInputNamesFileAndPlaceAndExitsWithTwo) {
               HasSubstr("--speed"));
   EXPECT_THAT(refused({"sealwatch", "replay", "--config", config(), "--offline", "--with-services", text_in_number}),
               ::testing::AllOf(HasSubstr("--with-services"), HasSubstr("--offline")));
+  EXPECT_THAT(
+      refused({"sealwatch", "replay", "--config", config(), "--offline", "--state", folder_.string(), text_in_number}),
+      ::testing::AllOf(HasSubstr("--state"), HasSubstr("--with-services")));
   EXPECT_THAT(refused({"sealwatch", "watch", "--config", config(), "--asset", "XT03-MV3"}),
               ::testing::AllOf(HasSubstr("is not a configured asset"), HasSubstr("did you mean 'XT03-MV2'?")));
   EXPECT_THAT(refused({"sealwatch", "fit", "--asset", "XT03-MV2", text_in_number}),
-              HasSubstr("wants an asset file, and 'XT03-MV2' is none; for example --asset config/assets/"));
+              HasSubstr("takes an asset file, and there is no file 'XT03-MV2'; for example --asset config/assets/"));
   for (const char* no_file : {"/dev/zero", "/dev/tty", "/tmp"})
     EXPECT_THAT(refused({"sealwatch", "fit", "--asset", no_file, text_in_number}),
                 ::testing::AllOf(HasSubstr(std::string(no_file) + ": is a d"), HasSubstr("give a file")));
@@ -442,7 +445,7 @@ TEST_F(Commands, ReplayWritesThePageOfTheForecastThatItShows) {
   command.insert(command.end(), recordings().begin(), recordings().end());
   const Finished replay = run(command);
   ASSERT_EQ(replay.status, 0) << replay.output;
-  EXPECT_THAT(replay.output, HasSubstr("in " + page));
+  EXPECT_THAT(replay.output, HasSubstr("wrote " + page));
   std::ifstream lives(folder_ / "remaining_life.jsonl");
   std::string last;
   for (std::string line; std::getline(lives, line);) last = line;

@@ -382,7 +382,7 @@ TEST_F(OperatorOfAlarms, RefusesWhatCannotBeDone) {
   const Finished unknown =
       say("shelve", {"XT03-MV2", "sensor_lost/pressure_a", "--until", "2199-01-01", "--reason", "a try"});
   EXPECT_EQ(unknown.status, 1) << unknown.output;
-  EXPECT_THAT(unknown.output, HasSubstr("'sensor_lost/pressure_a': is no alarm of XT03-MV2"));
+  EXPECT_THAT(unknown.output, HasSubstr("'sensor_lost/pressure_a': is not an alarm of XT03-MV2"));
   const Finished no_time = say("shelve", {"XT03-MV2", "x", "--until", "soon", "--reason", "a try"});
   EXPECT_EQ(no_time.status, 2) << no_time.output;
   EXPECT_THAT(no_time.output, HasSubstr("--until"));
@@ -404,7 +404,7 @@ TEST_F(Operator, IsToldThatARetractionMeansNothing) {
     EXPECT_THAT(vain.output,
                 AllOf(HasSubstr(what + ": '" + value + "'"), HasSubstr(says), Not(HasSubstr("received:"))));
   };
-  is_told("--test", "NOSUCH", "is no test of XT03-MV2");
+  is_told("--test", "NOSUCH", "is not a test of XT03-MV2");
   is_told("--test", "XT03-MV2-20010101T000000Z-00000000", "changes nothing");
   is_told("--since", "2031-01-01", "changes nothing");
   is_told("--withdraw", "retraction/XT03-MV2/since/2031-01-01T00:00:00Z/2031-01-01T00:00:00Z", "changes nothing");

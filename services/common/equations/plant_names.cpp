@@ -56,7 +56,8 @@ PlantNames::PlantNames(const TextPlant& plant, Expressions& expressions, const F
 
 void PlantNames::add_name(const std::string& key, const std::string& name) {
   if (!is_name(name))
-    faults_(key, fault(name, "is no name for an equation", "letters, digits and _ make a name, a letter comes first"));
+    faults_(key,
+            fault(name, "is not a name for an equation", "letters, digits and _ make a name, a letter comes first"));
   const auto [known, added] = taken_.try_emplace(name, key);
   if (!added) faults_(key, fault(name, "is a name already, of " + known->second, "give one of them another name"));
   const std::vector<std::string> functions = known_functions();
@@ -76,7 +77,7 @@ void PlantNames::add_table(const TextTable& table) {
   bool rising = table.x.size() >= 2 && table.x.size() == table.y.size();
   for (std::size_t k = 1; rising && k < table.x.size(); ++k) rising = table.x[k] > table.x[k - 1];
   if (!rising) {
-    faults_(key, fault(table.name, "is no table", "give two or more rising values of x and as many of y"));
+    faults_(key, fault(table.name, "is not a table", "give two or more rising values of x and as many of y"));
     return;
   }
   tables_[table.name] = {expressions_.add_table(Table(table.x, table.y)), unit_at(key + ".x_unit", table.x_unit),

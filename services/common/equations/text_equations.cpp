@@ -172,7 +172,7 @@ Result<std::vector<double>> TextEquations::initial_state(std::span<const double>
                         .place = "start of state " + of.state,
                         .value = of.choices.back().channels.front(),
                         .rule = "is not recorded",
-                        .advice = "give the state another start, as the next item of a list"});
+                        .advice = "add a column with it, or give the state a second start: start: [CHANNEL, VALUE]"});
     const std::array<Node, 1> wanted = {choice->node};
     const Tape tape(start.expressions, wanted, std::vector<bool>(count, false));
     std::vector<double> registers = tape.registers();

@@ -152,6 +152,11 @@ void judge(ModelValidation& validation) {
       if (std::string remark = remark_on(misfit); !remark.empty()) validation.remarks.push_back(std::move(remark));
       continue;
     }
+    if (misfit.recordings == 1) {
+      validation.reasons.push_back(text::format("{} misfits by {:.3g} noise standard deviations; at most {:.3g} pass",
+                                                misfit.channel, misfit.largest, limit));
+      continue;
+    }
     validation.reasons.push_back(text::format(
         "{} misfits by more than {:.3g} noise standard deviations in {} of {} recordings, most by {:.3g} in {}",
         misfit.channel, limit, misfit.beyond, misfit.recordings, misfit.largest, misfit.worst));

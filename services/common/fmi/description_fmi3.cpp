@@ -31,7 +31,7 @@ std::uint32_t reference_of(const DescriptionReader& reader, const pugi::xml_node
 std::size_t place_of(const DescriptionReader& reader, const pugi::xml_node& node, const char* name,
                      const Places& places) {
   const auto place = places.find(reference_of(reader, node, name));
-  if (place == places.end()) reader.refuse(node, reader.text(node, name), "is no variable's value reference");
+  if (place == places.end()) reader.refuse(node, reader.text(node, name), "is not a variable's value reference");
   return place->second;
 }
 
@@ -127,7 +127,7 @@ void read_fmi3(const DescriptionReader& reader, const pugi::xml_node& root, Mode
   std::vector<pugi::xml_node> nodes;
   for (const pugi::xml_node& node : root.child("ModelVariables").children()) {
     const auto kind = std::ranges::find(kKinds, std::string_view(node.name()), &Kind::element);
-    if (kind == kKinds.end()) reader.refuse(node, node.name(), "is no type of variable of the standard");
+    if (kind == kKinds.end()) reader.refuse(node, node.name(), "is not a type of variable of the standard");
     description.variables.push_back(read_variable(reader, node, kind->type, types));
     nodes.push_back(node);
     if (!places.emplace(description.variables.back().reference, nodes.size() - 1).second)

@@ -251,7 +251,7 @@ class Fmi3Instance final : public FmiInstance {
       case FmiType::enumeration:
         return get_as<std::int64_t>(library_, instance_, "fmi3GetInt64", handle, values);
       default:
-        throw Failure{"a variable that is no number cannot be read as one"};
+        throw Failure{"a variable that is not a number cannot be read as one"};
     }
   }
   void set_one(const Handle& handle, const double* values) const {
@@ -280,7 +280,7 @@ class Fmi3Instance final : public FmiInstance {
       case FmiType::enumeration:
         return set_as<std::int64_t>(library_, instance_, "fmi3SetInt64", handle, values);
       default:
-        throw Failure{"a variable that is no number cannot be set as one"};
+        throw Failure{"a variable that is not a number cannot be set as one"};
     }
   }
 

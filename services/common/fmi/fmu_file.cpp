@@ -145,7 +145,7 @@ Status FmuFile::take_settings() {
     const Variable* variable = description_.find(name);
     if (variable == nullptr) return refused(description_.find_element(name).error());
     if (!can_be_set(*variable))
-      return refused(refusal("is no parameter that can be set", "settings are for parameters", name));
+      return refused(refusal("is not a parameter that can be set", "settings are for parameters", name));
     Result<std::string> value = value_of_setting(*variable, text);
     if (!value) return refused(value.error());
     values_[name] = std::move(*value);
@@ -187,7 +187,7 @@ Result<Setup> FmuFile::setup(Selection& selection) const {
     for (const std::size_t k : *list)
       if (!is_number(variables[k].type))
         return fail(
-            refusal("is no number, but a variable of type " + std::string(sealwatch::name_of(variables[k].type)),
+            refusal("is not a number, but a variable of type " + std::string(sealwatch::name_of(variables[k].type)),
                     "leave it out", variables[k].name));
   // Not std::ranges: clang 14, whose clang-tidy reads this, cannot compile it.
   const auto behind = std::stable_partition(selection.inputs.begin(), selection.inputs.end(),

@@ -101,7 +101,7 @@ class Builder {
         std::vector<std::string> names;
         for (const Element& state : description_->states) names.push_back(description_->name_of(state));
         complain("states." + text_.states[k].description.name,
-                 fault(section_.states[k], "is no state of the FMU", suggest(section_.states[k], names)));
+                 fault(section_.states[k], "is not a state of the FMU", suggest(section_.states[k], names)));
       }
   }
 

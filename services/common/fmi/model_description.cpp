@@ -99,7 +99,7 @@ ModelDescription read_root(const DescriptionReader& reader, const pugi::xml_node
   description.version_text = reader.required(root, "fmiVersion");
   const bool fmi2 = description.version_text.starts_with("2.");
   if (!fmi2 && !description.version_text.starts_with("3."))
-    reader.refuse(root, description.version_text, "is no version of FMI that sealwatch runs: 2.0 and 3.0",
+    reader.refuse(root, description.version_text, "is not a version of FMI that sealwatch runs: 2.0 and 3.0",
                   "export the model as FMI 2.0 or 3.0");
   if (description.version_text.find('-') != std::string::npos)
     reader.refuse(root, description.version_text, "is a draft of FMI, whose functions are not those of the standard",
@@ -188,7 +188,7 @@ Result<Element> ModelDescription::find_element(std::string_view name) const {
   return fail(Error{.file = file,
                     .place = {},
                     .value = std::string(name),
-                    .rule = "is no variable of the FMU",
+                    .rule = "is not a variable of the FMU",
                     .advice = suggest(name, names)});
 }
 

@@ -184,7 +184,7 @@ std::string RunningBlock::fault_of_step(double step_s) {
   if (std::abs(whole - std::round(whole)) > kRounding * whole || whole < 0.5)
     return "the FMU does steps of " + std::to_string(interface.fixed_step_s) +
            " s (fixedInternalStepSize), of which the distance of the samples, " + std::to_string(step_s) +
-           " s, is no whole number: bring the samples to such distances, or import it for Model Exchange";
+           " s, is not a whole number: bring the samples to such distances, or import it for Model Exchange";
   return "";
 }
 

@@ -69,7 +69,7 @@ std::string fault_of(const Variable& variable, double value) {
   if (!is_real(variable.type) && value != std::round(value))
     return "must be a whole number, as " + variable.name + " is of type " + std::string(name_of(variable.type));
   const bool is_item = std::ranges::find(variable.items, value, &Item::value) != variable.items.end();
-  if (!variable.items.empty()) return is_item ? "" : "is no item of the enumeration " + variable.name;
+  if (!variable.items.empty()) return is_item ? "" : "is not an item of the enumeration " + variable.name;
   if (value < range.least) return "must be " + text::exact(range.least) + " or more, as the FMU declares it";
   if (value > range.most) return "must be " + text::exact(range.most) + " or less, as the FMU declares it";
   return "";
@@ -98,7 +98,7 @@ Result<std::string> value_of_setting(const Variable& variable, const std::string
   for (const std::string& word : words) {
     const std::optional<double> value = value_of_word(variable, word);
     if (!value && !variable.items.empty())
-      return refused(word, "is no item of the enumeration " + variable.name, items_in_words(variable));
+      return refused(word, "is not an item of the enumeration " + variable.name, items_in_words(variable));
     if (!value) break;
     if (std::string fault = fault_of(variable, *value); !fault.empty())
       return refused(word, std::move(fault), items_in_words(variable));

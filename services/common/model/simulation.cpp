@@ -200,7 +200,7 @@ Result<FreeQuantity> PlantSimulation::find(std::string_view quantity) const {
   return fail(Error{.file = {},
                     .place = {},
                     .value = std::string(quantity),
-                    .rule = "is no quantity of " + plant().name,
+                    .rule = "is not a quantity of " + plant().name,
                     .advice = suggest(quantity, names)});
 }
 

@@ -62,9 +62,11 @@ std::string Colouring::part(const Part& part) const {
   const double share = probability(part.element);
   std::string svg = filled(part.element, part.shape);
   svg.append("<g class=\"symbol\">").append(part.symbol).append("</g>\n");
-  svg += text_at(part.label_x, part.label_y, part.anchor, share >= kShown ? "title" : "", text::in_words(part.element));
+  // A halo keeps the words legible on a strong colour, light and dark.
+  const std::string_view strong = part.inside ? "title named" : "title";
+  svg += text_at(part.label_x, part.label_y, part.anchor, share >= kShown ? strong : "", text::in_words(part.element));
   if (share >= kShown)
-    svg += text_at(part.label_x, part.label_y + 14.0, part.anchor, part.inside ? "title" : "share",
+    svg += text_at(part.label_x, part.label_y + 17.0, part.anchor, part.inside ? strong : "share",
                    text::percent_text(share));
   return svg;
 }

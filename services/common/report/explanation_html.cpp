@@ -97,12 +97,12 @@ std::string figures(const Explanation& explanation) {
   };
   add_misfit(explanation.holdout, explanation.holdout_recordings.empty() ? "left out in turn" : "held out");
   add_misfit(explanation.fit, "fitted");
-  if (changed) add_figure(text::percent_text(explanation.explained_share), "of the misfit explained", html);
+  // Where the misfit was at its floor already, 0 % would seem to deny what was found.
+  if (changed && explanation.explained_share >= 0.005)
+    add_figure(text::percent_text(explanation.explained_share), "of the misfit explained", html);
   return html.append("</div>\n")
       .append(
-          paragraph("Misfit: rms of recording minus simulation, in multiples of the sensor noise. 1 means that only "
-                    "noise is left.",
-                    "small muted"));
+          paragraph("Misfit: rms of (recording − simulation) / sensor noise; at 1 only noise remains.", "small muted"));
 }
 
 }  // namespace
@@ -169,7 +169,7 @@ std::string next_steps(const Explanation& explanation) {
   if (explanation.verdict == Verdict::mismatch)
     steps = steps_after(explanation);
   else if (explanation.verdict == Verdict::consistent)
-    steps = paragraph("Nothing has to be mended. Read below what these recordings could not have shown. " +
+    steps = paragraph("No repair is needed. See below what these recordings could not have shown. " +
                       explanation.next_test);
   else if (explanation.next_test.empty())
     return {};

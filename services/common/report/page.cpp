@@ -43,7 +43,7 @@ ul,ol{margin:.3rem 0 .8rem;padding-left:1.2rem;max-width:80ch}li{margin:.2rem 0}
 code,.law{font-family:ui-monospace,"DejaVu Sans Mono",monospace;font-size:.92em}
 .law{display:inline-block;background:var(--soft);padding:.3rem .6rem;border-radius:.3rem}
 .banner{border-left:.45rem solid var(--muted);background:var(--soft);padding:.8rem 1.1rem;margin:.9rem 0 1.1rem;border-radius:.2rem}
-.banner p{font-size:1.08rem;margin:.2rem 0}.banner.good{border-color:var(--good)}.banner.bad{border-color:var(--second)}
+.banner p{font-size:1.08rem;margin:.2rem 0;max-width:100ch}.banner.good{border-color:var(--good)}.banner.bad{border-color:var(--second)}
 .banner.warn{border-color:var(--warn)}.verdict{font-weight:700;font-size:1.15rem}
 .figures{display:flex;flex-wrap:wrap;gap:.6rem 2.2rem;margin:.7rem 0}.figures div{min-width:8rem}
 .figures b{display:block;font-size:1.2rem}.figures span{color:var(--muted);font-size:.86rem}.figures b span{color:inherit;font-size:inherit}
@@ -93,6 +93,49 @@ svg[role]{width:100%}svg text{font-size:12px}}
 
 /// What a drawing as a file of its own needs.
 constexpr std::string_view kOnScreen = kStyle.substr(0, kStyle.find("@media print"));
+
+/// The light colour of a variable of the style sheet; empty: it is no colour.
+std::string_view light_colour(std::string_view name) {
+  const std::string declared = std::string("--").append(name).append(":");
+  const std::string_view light = kStyle.substr(0, kStyle.find("@media"));
+  const std::size_t at = light.find(declared);
+  if (at == std::string_view::npos) return {};
+  const std::string_view value = light.substr(at + declared.size());
+  return value.substr(0, value.find_first_of(";}"));
+}
+
+/// `text` with the light colour before each declaration that takes it from a variable: many viewers of SVG know no
+/// variables and would draw in black.
+std::string with_plain_colours(std::string_view text) {
+  constexpr std::string_view kVariable = ":var(--";
+  std::string plain;
+  for (std::size_t at = text.find(kVariable); at != std::string_view::npos; at = text.find(kVariable)) {
+    const std::size_t property = text.substr(0, at).find_last_of("{;\"") + 1;
+    const std::size_t name = at + kVariable.size();
+    const std::size_t end = text.find(')', name);
+    const std::string_view colour = light_colour(text.substr(name, end - name));
+    plain.append(text.substr(0, property));
+    if (!colour.empty() && !text.substr(property).starts_with("--"))
+      plain.append(text.substr(property, at - property)).append(":").append(colour).append(";");
+    plain.append(text.substr(property, end - property));
+    text.remove_prefix(end);
+  }
+  return plain.append(text);
+}
+
+/// What each ink colours, without the variable `--ink`.
+std::string inks() {
+  constexpr std::string_view kInk = "{--ink:var(--";
+  std::string rules;
+  for (std::size_t at = kOnScreen.find(kInk); at != std::string_view::npos; at = kOnScreen.find(kInk, at + 1)) {
+    const std::size_t dot = kOnScreen.rfind('.', at);
+    const std::string ink(kOnScreen.substr(dot, at - dot));
+    const std::size_t name = at + kInk.size();
+    const std::string colour = "var(--" + std::string(kOnScreen.substr(name, kOnScreen.find(')', name) - name)) + ")}";
+    rules += ink + ".stroke{stroke:" + colour + ink + ".fill," + ink + ".area{fill:" + colour + "\n";
+  }
+  return rules;
+}
 
 /// What belongs on paper is opened for printing, and closed again; what its reader opened is printed as well.
 constexpr std::string_view kScript =
@@ -163,10 +206,11 @@ std::string html_page(std::string_view title, std::string_view body) {
 
 std::string standalone_svg(std::string_view title, int width, int height, std::string_view body) {
   const std::string size = std::to_string(width) + " " + std::to_string(height);
-  return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + std::to_string(width) + "\" height=\"" +
-         std::to_string(height) + "\" viewBox=\"0 0 " + size + "\">\n<title>" + escaped(title) + "</title>\n<style>" +
-         std::string(kOnScreen) + "</style>\n<rect width=\"100%\" height=\"100%\" style=\"fill:var(--page)\"/>\n" +
-         std::string(body) + "</svg>\n";
+  return with_plain_colours("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + std::to_string(width) +
+                            "\" height=\"" + std::to_string(height) + "\" viewBox=\"0 0 " + size + "\">\n<title>" +
+                            escaped(title) + "</title>\n<style>" + std::string(kOnScreen) + inks() +
+                            "</style>\n<rect width=\"100%\" height=\"100%\" style=\"fill:var(--page)\"/>\n" +
+                            std::string(body) + "</svg>\n");
 }
 
 std::string section(std::string_view title, std::string_view body) {

@@ -200,9 +200,11 @@ std::string first_screen(const Explanation& explanation) {
       found += paragraph("Other values would explain as much: see the table below.", "small muted");
   }
   if (found.empty()) {
-    for (const mismatch::Location& place : explanation.location)
-      found +=
-          paragraph(element_name(place.element) + ", " + text::percent_text(place.probability) + ": " + place.evidence);
+    for (const mismatch::Location& place : explanation.location) {
+      const bool said = explanation.summary.find(place.evidence) != std::string::npos;
+      found += paragraph(element_name(place.element) + ", " + text::percent_text(place.probability) +
+                         (said ? "." : ": " + place.evidence));
+    }
     found += paragraph(explanation.location.empty() ? "No element stands out." : "No law is claimed for it.", "muted");
   }
   return std::string("<div class=\"screen\">\n<div>\n<h2>")

@@ -29,7 +29,7 @@ const PlantDescription* read_plant(YamlMap& asset, std::string& model, std::vect
   const std::filesystem::path file = std::filesystem::path(asset.file()).parent_path() / node->Scalar();
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) {
-    asset.fault("model", node->Scalar(), "is no file", "give the plant's file as seen from this one's folder");
+    asset.fault("model", node->Scalar(), "is not a file", "give the plant's file as seen from this one's folder");
     return nullptr;
   }
   const auto plant = load_plant(file.string());

@@ -87,7 +87,7 @@ Result<std::vector<MismatchRecord>> read_mismatch_records(const std::string& fil
       return fail(Error{.file = file,
                         .place = "line " + std::to_string(number),
                         .value = {},
-                        .rule = std::string("is no record of a trial: ") + problem.what(),
+                        .rule = std::string("is not a record of a trial: ") + problem.what(),
                         .advice = "remove the line: --resume makes the set again"});
     }
   }

@@ -224,7 +224,7 @@ TEST_F(Kept, AMissingJournalIsNamed) {
   const Said estimate = show("leakage_estimate/life-59");
   EXPECT_EQ(estimate.status, kBadInput);
   EXPECT_THAT(estimate.errors, AllOf(HasSubstr(file), Not(HasSubstr("came from outside"))));
-  EXPECT_THAT(show("life-59").errors, AllOf(HasSubstr(file), Not(HasSubstr("is no message"))))
+  EXPECT_THAT(show("life-59").errors, AllOf(HasSubstr(file), Not(HasSubstr("is not a message"))))
       << "a test that may be in there";
   const Said advice = show(kAsset);
   EXPECT_EQ(advice.status, kOk) << advice.errors;

@@ -52,7 +52,7 @@ class RetractionEffect : public ::testing::Test {
 
 TEST_F(RetractionEffect, ATestOfAnotherAssetIsNone) {
   const KnownTests nothing;
-  EXPECT_THAT(said(objection(nothing, test("NOSUCH"))), HasSubstr("'NOSUCH': is no test of XT03/MV2"));
+  EXPECT_THAT(said(objection(nothing, test("NOSUCH"))), HasSubstr("'NOSUCH': is not a test of XT03/MV2"));
   EXPECT_THAT(said(objection(nothing, test(kMarch))), HasSubstr("whose ids begin with 'XT03_MV2-'"));
   EXPECT_EQ(said(objection(nothing, test(kApril))), "") << "it may be one that prognosis does not know yet";
 }

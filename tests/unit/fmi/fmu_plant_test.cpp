@@ -229,11 +229,11 @@ TEST(FmuPlant, ASettingThatItsVariableCannotHaveIsRefusedAtItsLine) {
   EXPECT_THAT(fault_of("gap: -0.5"), HasSubstr("must be 0 or more"));
   EXPECT_THAT(fault_of("on: 2"), HasSubstr("must be true or false"));
   EXPECT_THAT(fault_of("n: many"), HasSubstr("must have as many numbers as n has elements, 1"));
-  EXPECT_THAT(fault_of("nn: 7"), HasSubstr("line 6, key fmu.settings.nn: 'nn': is no variable of the FMU"));
+  EXPECT_THAT(fault_of("nn: 7"), HasSubstr("line 6, key fmu.settings.nn: 'nn': is not a variable of the FMU"));
   for (const char* value : {"9", "1.5", "stiff"})
     EXPECT_THAT(fault_of("body.mode: " + std::string(value)),
                 testing::AllOf(HasSubstr("line 6, key fmu.settings.body.mode: '" + std::string(value) + "'"),
-                               testing::AnyOf(HasSubstr("is no item of the enumeration body.mode"),
+                               testing::AnyOf(HasSubstr("is not an item of the enumeration body.mode"),
                                               HasSubstr("must be a whole number")),
                                HasSubstr("its items are free (1), very stiff (2)")));
 }

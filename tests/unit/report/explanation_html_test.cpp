@@ -91,6 +91,23 @@ TEST(ReportHtml, SaysWhatToDoNextWhateverTheVerdict) {
   EXPECT_THAT(explanation_to_html(consistent_example()), HasSubstr("What to do next"));
 }
 
+TEST(ReportHtml, TheFirstScreenSaysAFindingOnce) {
+  mismatch::Explanation changed = undetermined_example();
+  changed.summary = "R_CL changed between the tests.";
+  changed.location.resize(1);
+  changed.location.front().evidence = changed.summary;
+  const std::string html = explanation_to_html(changed);
+  const std::string screen = html.substr(0, html.find("What to record next"));
+  EXPECT_EQ(screen.find(changed.summary), screen.rfind(changed.summary));
+}
+
+TEST(ReportHtml, NoShareOfAMisfitThatWasAtItsFloor) {
+  mismatch::Explanation weak = example_explanation();
+  EXPECT_THAT(explanation_to_html(weak), HasSubstr("of the misfit explained</span>"));
+  weak.explained_share = 0.0;
+  EXPECT_THAT(explanation_to_html(weak), Not(HasSubstr("of the misfit explained</span>")));
+}
+
 TEST(ReportHtml, ASensorIsNothingThatTheModelLacks) {
   mismatch::Explanation explanation = example_explanation();
   EXPECT_THAT(explanation_to_html(explanation), HasSubstr("What the model lacks"));

@@ -55,6 +55,15 @@ TEST(Page, StylesOfDrawingsDoNotReachTheTextOfAPart) {
   EXPECT_EQ(page.find("\n.part{fill"), std::string::npos) << "text inside would inherit its stroke, and look smeared";
 }
 
+TEST(Page, AViewerWithoutVariablesDrawsInLightColours) {
+  const std::string svg = standalone_svg("t", 9, 9, "<path class=\"ink-first stroke\" style=\"fill:var(--page)\"/>");
+  for (const char* colour : {"style=\"fill:#fff;fill:var(--page)\"", "svg .tick{fill:#5c6670;fill:var(--muted)}",
+                             ".ink-first.stroke{stroke:#0067a5;stroke:var(--first)}",
+                             ".ink-first.fill,.ink-first.area{fill:#0067a5;fill:var(--first)}"})
+    EXPECT_NE(svg.find(colour), std::string::npos) << colour;
+  EXPECT_EQ(what_is_wrong(svg), "");
+}
+
 TEST(WellFormed, SeesWhatIsWrong) {
   EXPECT_NE(what_is_wrong("<p><b></p></b>"), "");
   EXPECT_NE(what_is_wrong("<p>a & b</p>"), "");

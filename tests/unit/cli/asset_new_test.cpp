@@ -88,10 +88,10 @@ TEST_F(AssetNew, OfTwoColumnsWithOneHeaderThePlaceIsWritten) {
 
 TEST_F(AssetNew, OfALogWithManyColumnsSomeAreNamed) {
   std::string header = "time", row = "0";
-  for (int k = 0; k < 200; ++k) header += ",Q" + std::to_string(k), row += ",1";
+  for (int k = 0; k < 200; ++k) header += ",Ei" + std::to_string(k) + " [mm/kg]", row += ",1";
   ::testing::internal::CaptureStderr();
   EXPECT_EQ(make((header + "\n" + row + "\n").c_str()), kBadInput);
-  EXPECT_THAT(::testing::internal::GetCapturedStderr(), ::testing::HasSubstr("Q28, and 171 more; known are"));
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), ::testing::HasSubstr("Ei28 [mm/kg], and 171 more; known are"));
 }
 
 TEST_F(AssetNew, TestsInOneFileAndRowsWithHolesAreSeen) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <ranges>
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/signal/noise_floor.hpp"
@@ -55,11 +56,17 @@ void set_layout(Understood& log) {
   log.map.log.first_row = static_cast<int>(found.first_row);
 }
 
+/// Its header cell; its place where another column has the same.
+std::string name_of_column(const Offer& offer, std::size_t column) {
+  const std::string& text = offer.columns[column].text;
+  return std::ranges::count(offer.columns, text, &OfferedColumn::text) > 1 ? place_name(column) : text;
+}
+
 void set_columns(Understood& log) {
   const ColumnMapping time = log.map.columns["time"];
   log.map.columns = {{"time", time}};
   for (const ChannelGuess& guess : log.guesses)
-    log.map.columns[guess.channel] = {.column = log.offer.columns[guess.column].text, .unit = guess.unit};
+    log.map.columns[guess.channel] = {.column = name_of_column(log.offer, guess.column), .unit = guess.unit};
 }
 
 /// Reads the log by the map; where its time starts anew or cells are empty, the map learns to say so.
@@ -412,7 +419,10 @@ Result<Understood> understand(const AssetNewOptions& options) {
   if (log.guesses.empty()) {
     std::vector<std::string> names, columns;
     for (const ChannelDescription& channel : log.plant->channels) names.push_back(channel.name);
-    for (const OfferedColumn& column : log.offer.columns) columns.push_back(column.text);
+    constexpr std::size_t kMostNamed = 30;
+    for (const OfferedColumn& column : log.offer.columns | std::views::take(kMostNamed)) columns.push_back(column.text);
+    if (log.offer.columns.size() > kMostNamed)
+      columns.push_back("and " + std::to_string(log.offer.columns.size() - kMostNamed) + " more");
     return fail(Error{
         .file = options.log,
         .place = {},

@@ -13,6 +13,7 @@
 #include "sealwatch/model/plant_description.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/recordings.hpp"
+#include "services/cli/runaway.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/common/runtime/in_process_pipeline.hpp"
@@ -223,6 +224,7 @@ int run_fit(const FitOptions& options) {
   const Result<const PlantDescription*> plant = find_plant(asset->model);
   const auto recordings = read_recordings(options.recordings, *asset, **plant);
   if (!recordings) return kBadInput;
+  tell_runaway(*recordings, *asset, **plant);
   const std::optional<FitResult> fit = fit_as_asked(options, *asset, **plant, *recordings);
   if (!fit) return kBadInput;
   options.json ? print_json(*asset, options, *fit) : print_text(*asset, options, *fit);

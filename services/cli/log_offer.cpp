@@ -12,6 +12,7 @@
 #include "services/common/recording/log_reader.hpp"
 #include "services/common/recording/mat_reader.hpp"
 #include "services/common/recording/recording_file.hpp"
+#include "services/common/units/unit_conversion.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -80,6 +81,13 @@ bool are_excel_days(const std::vector<double>& numbers) {
          numbers.back() - numbers.front() < 0.5;
 }
 
+/// The unit of time that a column says it is in; "ms" alone is a time's name, too. "" where it says none.
+std::string unit_of_time(const OfferedColumn& column) {
+  for (const std::string& said : {unit_of(column), unit_at_the_end(column.text, "s"), column.text})
+    if (!said.empty() && convert_unit(said, "s")) return said;
+  return "";
+}
+
 std::optional<std::size_t> time_column(const Offer& offer) {
   static const std::set<std::string> kNames = {"time",       "t",        "timestamp", "zeit", "date",
                                                "time stamp", "datetime", "date/time", "datum"};
@@ -95,8 +103,12 @@ std::optional<std::size_t> time_column(const Offer& offer) {
   if (const auto named = first([&](std::size_t k) { return is_named(k) && counts(k); })) return named;
   if (const auto named = first(is_named)) return named;  // its first cell is then what is refused
   if (const auto timed = first([&](std::size_t k) { return !time_format_of(offer.cells[k]).empty(); })) return timed;
-  return first(
-      [&](std::size_t k) { return has_numbers(offer, k) && rises(numbers_of(offer.cells[k], offer.layout.decimal)); });
+  const auto in_time = [&](std::size_t k) { return !unit_of_time(offer.columns[k]).empty(); };
+  const auto rising = [&](std::size_t k) {
+    return has_numbers(offer, k) && rises(numbers_of(offer.cells[k], offer.layout.decimal));
+  };
+  if (const auto timed = first([&](std::size_t k) { return in_time(k) && rising(k); })) return timed;
+  return first(rising);
 }
 
 std::string time_unit(const Offer& offer, std::size_t column) {
@@ -104,7 +116,7 @@ std::string time_unit(const Offer& offer, std::size_t column) {
   const std::vector<double> numbers = numbers_of(offer.cells[column], offer.layout.decimal);
   if (are_excel_days(numbers)) return "excel";
   if (std::string said = unit_of(offer.columns[column]); !said.empty()) return said;
-  if (std::string said = unit_at_the_end(offer.columns[column].text, "s"); !said.empty()) return said;
+  if (std::string said = unit_of_time(offer.columns[column]); !said.empty()) return said;
   for (const auto& [unit, in_s] : {std::pair{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}})  // those since 1970 are large
     if (numbers.empty() || numbers.back() * in_s <= TestLimits{}.largest_time_s) return unit;
   return "ns";

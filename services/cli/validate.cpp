@@ -7,6 +7,7 @@
 #include "sealwatch/core/file.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/recordings.hpp"
+#include "services/cli/runaway.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/cli/validate_page.hpp"
@@ -92,6 +93,7 @@ int run_validate(const ValidateOptions& options) {
   const Result<const PlantDescription*> plant = find_plant(asset->model);
   const auto recordings = read_recordings(options.recordings, *asset, **plant);
   if (!recordings) return kBadInput;
+  tell_runaway(*recordings, *asset, **plant);
   const auto validation = validate_model(*asset, *recordings, options.recordings, options.fit);
   if (!validation) {
     complain(validation.error());

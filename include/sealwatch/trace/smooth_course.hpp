@@ -19,9 +19,21 @@ class Course {
   [[nodiscard]] double end_s() const { return time_s_.back(); }
   /// Value and slope [1/s] at `time_s`.
   [[nodiscard]] std::pair<double, double> at(double time_s) const;
+  /// Of the value at `time_s`, what the samples leave open, as a variance: nothing on a sample, nothing where the course
+  /// through every second sample finds the others, much at corners and jumps.
+  [[nodiscard]] double variance_at(double time_s) const;
+  /// Mean of variance_at() over the whole course.
+  [[nodiscard]] double mean_variance() const;
 
  private:
+  [[nodiscard]] std::size_t interval_of(double time_s) const;
+  [[nodiscard]] std::pair<double, double> cubic(std::size_t from, std::size_t to, double from_slope, double to_slope,
+                                                double time_s) const;
+  [[nodiscard]] double missed_at(std::size_t sample) const;
+  [[nodiscard]] double missed_in(std::size_t interval) const;
+
   std::vector<double> time_s_, values_, slopes_;
+  std::vector<double> missed_;  ///< of each sample, by the course through every second sample
 };
 
 /// d/dt of uniformly sampled values: central difference over k samples to either side, averaged, with the least k that

@@ -174,16 +174,13 @@ class Builder {
   void check_sizes() {
     std::string missing, there;
     const std::vector<NeededSize> needed = needed_sizes(text_);
-    const auto can_be_given = [&](const std::string& unit) {
-      return text_.law_sizes.contains(unit) || std::ranges::find(needed, unit, &NeededSize::unit) != needed.end();
-    };
-    for (const NeededSize& size : needed) {
-      if (text_.law_sizes.contains(size.unit)) continue;
-      const std::vector<std::string> sources = sources_of_size(size.unit);
-      if (!sources.empty() && std::ranges::all_of(sources, can_be_given)) continue;  // those are named
-      missing.append(missing.empty() ? "" : ", ").append(size.unit);
+    std::vector<std::string> units;
+    for (const NeededSize& size : needed) units.push_back(size.unit);
+    for (const std::string& unit : sizes_to_give(text_.law_sizes, units)) {
+      const NeededSize& size = *std::ranges::find(needed, unit, &NeededSize::unit);
+      missing.append(missing.empty() ? "" : ", ").append(unit);
       there.append(there.empty() ? "" : "; ")
-          .append(size.unit + ": " + in_words(reference_quantity(size, text_.sites), size.unit));
+          .append(unit + ": " + in_words(reference_quantity(size, text_.sites), unit));
     }
     if (!missing.empty())
       faults_("law_sizes", fault(missing, "is missing: units of laws that fit the plant's sites",

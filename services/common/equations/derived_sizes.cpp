@@ -53,15 +53,33 @@ std::vector<std::string> sources_of_size(std::string_view unit) {
 }
 
 void add_derived_sizes(std::map<std::string, double>& sizes) {
-  for (const Rule& rule : kRules) {
-    double size = 1.0;
-    for (const Factor& factor : rule.factors) {
-      if (factor.unit.empty()) continue;
-      const auto given = sizes.find(std::string(factor.unit));
-      size = given == sizes.end() ? 0.0 : size * std::pow(given->second, factor.power);
+  for (std::size_t before = 0; before != sizes.size();) {  // what was derived lets more be derived
+    before = sizes.size();
+    for (const Rule& rule : kRules) {
+      double size = 1.0;
+      for (const Factor& factor : rule.factors) {
+        if (factor.unit.empty()) continue;
+        const auto given = sizes.find(std::string(factor.unit));
+        size = given == sizes.end() ? 0.0 : size * std::pow(given->second, factor.power);
+      }
+      if (size > 0.0) sizes.try_emplace(std::string(rule.unit), size);
     }
-    if (size > 0.0) sizes.try_emplace(std::string(rule.unit), size);
   }
+}
+
+std::vector<std::string> sizes_to_give(const std::map<std::string, double>& given, std::vector<std::string> needed) {
+  std::erase_if(needed, [&](const std::string& unit) { return given.contains(unit); });
+  std::vector<std::string> units;  // those first that usually follow from others
+  for (const Rule& rule : kRules)
+    if (std::ranges::find(units, rule.unit) == units.end()) units.emplace_back(rule.unit);
+  for (const std::string& unit : units) {
+    std::map<std::string, double> sizes = given;
+    for (const std::string& other : needed)
+      if (other != unit) sizes.try_emplace(other, 1.0);
+    add_derived_sizes(sizes);
+    if (sizes.contains(unit)) std::erase(needed, unit);
+  }
+  return needed;
 }
 
 }  // namespace sealwatch::equations

@@ -15,4 +15,8 @@ namespace sealwatch::equations {
 /// Adds what follows from the sizes that are there and is not given itself.
 void add_derived_sizes(std::map<std::string, double>& sizes);
 
+/// The fewest of the needed units, in their order, whose sizes still have to be given for all to be known.
+[[nodiscard]] std::vector<std::string> sizes_to_give(const std::map<std::string, double>& given,
+                                                     std::vector<std::string> needed);
+
 }  // namespace sealwatch::equations

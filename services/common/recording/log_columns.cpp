@@ -153,6 +153,8 @@ class Mapper {
 
 }  // namespace
 
+std::string place_name(std::size_t index) { return "column " + std::to_string(index + 1); }
+
 std::string unit_of(const OfferedColumn& column) {
   return column.unit.empty() ? split_header_cell(column.text).unit : column.unit;
 }
@@ -183,8 +185,10 @@ Result<std::size_t> find_offered(const std::vector<OfferedColumn>& offered, cons
     if (found.size() == 1) return found.front();
     if (found.size() > 1)
       return fail("stands over columns " + std::to_string(found[0] + 1) + " and " + std::to_string(found[1] + 1),
-                  "give the whole header cell");
+                  "give the whole header cell, or its place: column " + std::to_string(found[0] + 1));
   }
+  for (std::size_t k = 0; k < offered.size(); ++k)
+    if (small == place_name(k)) return k;
   std::vector<std::string> texts;
   for (const OfferedColumn& column : offered)
     if (!column.text.empty()) texts.push_back(column.text);

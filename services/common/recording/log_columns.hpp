@@ -30,6 +30,9 @@ struct MappedColumns {
   std::vector<std::string> warnings = {};  ///< of columns whose unit is another in the map than in the log
 };
 
+/// "column 2": what a column without a header is called, and one that shares its header with another may be.
+[[nodiscard]] std::string place_name(std::size_t index);
+
 /// What a column's unit is: said beside it, or in its text by split_header_cell(); "" where neither.
 [[nodiscard]] std::string unit_of(const OfferedColumn& column);
 
@@ -41,7 +44,8 @@ struct MappedColumns {
 [[nodiscard]] Result<MappedColumns> map_columns(const std::vector<OfferedColumn>& offered,
                                                 const PlantDescription& plant, const ChannelMap& map);
 
-/// The offered column that a mapping means: its text, or its text without the unit; then with small for capital letters.
+/// The offered column that a mapping means: its text, or its text without the unit; then with small for capital letters;
+/// then its place.
 [[nodiscard]] Result<std::size_t> find_offered(const std::vector<OfferedColumn>& offered, const std::string& wanted);
 
 }  // namespace sealwatch

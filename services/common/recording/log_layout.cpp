@@ -10,6 +10,7 @@
 #include "services/common/recording/cells.hpp"
 #include "services/common/recording/columns.hpp"
 #include "services/common/recording/csv_rows.hpp"
+#include "services/common/recording/log_columns.hpp"
 #include "services/common/units/unit_conversion.hpp"
 
 namespace sealwatch {
@@ -79,6 +80,17 @@ Reading read_as(std::string_view head, char delimiter, char decimal) {
   return reading;
 }
 
+/// A number in quotes with a comma that separates no thousands: "0,52". Where commas stand between columns too, it is
+/// the decimal sign.
+bool has_quoted_decimals(std::string_view head) {
+  constexpr std::size_t kOfThousands = 3;
+  for (const auto& row : rows_of(head, ',', 1, kRowsLookedAt))
+    for (const std::string& cell : row)
+      if (const std::size_t comma = cell.rfind(','); comma != std::string::npos && parse_number(cell, ','))
+        if (trim(cell).size() - trim(cell).rfind(',') - 1 != kOfThousands) return true;
+  return false;
+}
+
 /// The best of all ways to read it; blanks only where nothing else makes a table.
 std::optional<Reading> best_reading(std::string_view head, const LogLayout& given) {
   std::optional<Reading> best;
@@ -86,7 +98,8 @@ std::optional<Reading> best_reading(std::string_view head, const LogLayout& give
     for (const auto& [decimal_name, decimal] : kDecimals) {
       if (!given.delimiter.empty() && given.delimiter != delimiter_name) continue;
       if (!given.decimal.empty() && given.decimal != decimal_name) continue;
-      if (delimiter == ',' && decimal == ',') continue;
+      const bool both = delimiter == ',' && decimal == ',';
+      if (both && given.decimal.empty() && !has_quoted_decimals(head)) continue;
       if (delimiter == ' ' && given.delimiter.empty() && best) continue;
       Reading reading = read_as(head, delimiter, decimal);
       if (reading.width > 0 && (!best || reading.values > best->values)) best = std::move(reading);
@@ -141,6 +154,12 @@ void find_header(const Reading& reading, const LogLayout& given, FoundLayout& ou
   if (!header_given && above > 0 && 2 * row(above).size() > reading.width) out.header_row = above;
 }
 
+/// "% time x": the sign that makes a comment of the header is no name where it makes a cell too many.
+std::vector<std::string> without_comment_sign(std::vector<std::string> header, std::size_t width) {
+  if (header.size() == width + 1 && (header.front() == "%" || header.front() == "#")) header.erase(header.begin());
+  return header;
+}
+
 /// Where the bracket opens that closes at the end of `cell`; npos: none does.
 std::size_t opening_of(std::string_view cell, char open, char close) {
   int depth = 0;
@@ -190,8 +209,8 @@ Result<FoundLayout> find_layout(std::string_view head, const LogLayout& given) {
   const auto cells_of = [&](std::size_t number) {
     return filled_to(number > 0 ? reading->rows[number - 1] : std::vector<std::string>(), reading->width);
   };
-  for (const std::string& cell : cells_of(out.header_row))
-    out.header.push_back(out.header_row > 0 ? as_utf8(trim(cell)) : "column " + std::to_string(out.header.size() + 1));
+  for (const std::string& cell : without_comment_sign(cells_of(out.header_row), reading->width))
+    out.header.push_back(out.header_row > 0 ? as_utf8(trim(cell)) : place_name(out.header.size()));
   for (const std::string& cell : cells_of(out.units_row)) out.units.push_back(without_brackets(cell));
   out.units.resize(out.header.size());
   return out;

@@ -35,8 +35,6 @@ void read_layout(YamlMap& map, LogLayout& layout) {
   for (const WordKey& key : word_keys()) log->read(key.name, layout.*key.target, key.known);
   for (const RowKey& key : kRowKeys) log->read(key.name, layout.*key.target, kRow);
   log->finish();
-  if (layout.delimiter == "comma" && layout.decimal == "comma")
-    log->fault("decimal", "comma", "cannot be the decimal sign and between columns", "delimiter: semicolon, or tab");
   if (layout.first_row != 0 && layout.first_row <= std::max(layout.header_row, layout.units_row))
     log->fault("first_row", std::to_string(layout.first_row), "must come after header_row and units_row");
 }

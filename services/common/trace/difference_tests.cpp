@@ -30,6 +30,16 @@ std::size_t order_of(const VectorXd& noise) {
   return choose_order({noise.data(), static_cast<std::size_t>(noise.size())}, largest);
 }
 
+/// 1 for samples that the simulation leaves open by less than the innovations scatter, 0 for others.
+VectorXd well_known(const VectorXd& between, Index samples, const VectorXd& innovations) {
+  constexpr double kNothing = 0.1;  // of the innovations' median square
+  if (between.size() == 0) return VectorXd::Ones(samples);
+  std::vector<double> squares(innovations.begin(), innovations.end());
+  for (double& square : squares) square *= square;
+  const double usual = signal::median(squares);
+  return (between.array() <= kNothing * usual).cast<double>();
+}
+
 constexpr double kFewestInAPart = 20.0;
 
 /// p-value that innovations scatter alike in all parts.
@@ -57,7 +67,7 @@ double spread_p(const VectorXd& innovations, const MatrixXd& parts, double least
 
 NoiseTest test_noise(const VectorXd& residual, const std::vector<RegressorGroup>& groups,
                      const std::vector<RegressorGroup>& partitions, const LeastVariances& least, const Joints& joints) {
-  const double least_variance = least.arithmetic;
+  const double least_variance = least.arithmetic + (least.between.size() > 0 ? least.between.mean() : 0.0);
   NoiseTest test;
   MatrixXd all(residual.size(), 0);
   for (const RegressorGroup& group : groups) {
@@ -83,8 +93,11 @@ NoiseTest test_noise(const VectorXd& residual, const std::vector<RegressorGroup>
   const std::vector<Index> rows = whole_windows(residual.size(), kLargestOrder, joints);
   double rounding = std::max(least.steps, least_variance);
   for (const double a : noise.coefficients) rounding += a * a * least.steps;
-  for (const RegressorGroup& partition : partitions)
-    test.groups.push_back({partition.name, spread_p(innovations, partition.columns(rows, Eigen::all), rounding)});
+  const VectorXd known = well_known(least.between, residual.size(), innovations)(rows);
+  for (const RegressorGroup& partition : partitions) {
+    const MatrixXd parts = known.asDiagonal() * MatrixXd(partition.columns(rows, Eigen::all));
+    test.groups.push_back({partition.name, spread_p(innovations, parts, rounding)});
+  }
   for (const GroupTest& group : test.groups)
     test.p_value = std::min(test.p_value, group.p_value * static_cast<double>(test.groups.size()));
   return test;

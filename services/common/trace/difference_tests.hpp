@@ -8,7 +8,8 @@
 // has columns that say something new.
 //
 // Noise that smooth takes a step for one large innovation; but innovations that scatter more in one regime than in another
-// know of the simulation, too. Their variances s_k^2 in the parts k of a partition against one s^2:
+// know of the simulation, too. Their variances s_k^2 in the parts k of a partition against one s^2, without the samples
+// that the simulation, known at times of its own, leaves open:
 //   sum_k n_k (log s^2 - log s_k^2) / ((kappa - 1) / 2)     chi-squared, kappa the innovations' kurtosis within the parts
 #pragma once
 
@@ -39,8 +40,9 @@ struct NoiseTest {
 
 /// Of one sample, the channel's unit squared.
 struct LeastVariances {
-  double arithmetic = 0.0;  ///< rounding of numbers
-  double steps = 0.0;       ///< of what the channel is recorded in: at rest they may show no noise at all
+  double arithmetic = 0.0;       ///< rounding of numbers
+  double steps = 0.0;            ///< of what the channel is recorded in: at rest they may show no noise at all
+  Eigen::VectorXd between = {};  ///< of each sample, what the simulation's samples leave open; empty: nothing
 };
 
 /// `partitions`: columns of 0 and 1, one 1 a row at most. `joints`: gaps in the residual (coloured_regression.hpp).

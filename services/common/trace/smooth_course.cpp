@@ -10,6 +10,14 @@ namespace sealwatch::trace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+namespace {
+
+/// At x of the way from one sample to the next the course is least known in the middle.
+double share_between(double x) { return 16.0 * x * x * (1.0 - x) * (1.0 - x); }
+constexpr double kMeanShare = 8.0 / 15.0;
+
+}  // namespace
+
 Course::Course(std::vector<double> time_s, std::vector<double> values)
     : time_s_(std::move(time_s)), values_(std::move(values)), slopes_(values_.size()) {
   const std::size_t last = values_.size() - 1;
@@ -17,20 +25,60 @@ Course::Course(std::vector<double> time_s, std::vector<double> values)
     const std::size_t before = k == 0 ? 0 : k - 1, after = std::min(k + 1, last);
     slopes_[k] = (values_[after] - values_[before]) / (time_s_[after] - time_s_[before]);
   }
+  for (std::size_t k = 0; k <= last; ++k) missed_.push_back(missed_at(k));
+}
+
+std::pair<double, double> Course::cubic(std::size_t from, std::size_t to, double from_slope, double to_slope,
+                                        double time_s) const {
+  const double h = time_s_[to] - time_s_[from], x = (time_s - time_s_[from]) / h;
+  const double y0 = values_[from], y1 = values_[to], m0 = from_slope * h, m1 = to_slope * h;
+  const double a = 2.0 * (y0 - y1) + m0 + m1, b = 3.0 * (y1 - y0) - 2.0 * m0 - m1;
+  return {((a * x + b) * x + m0) * x + y0, ((3.0 * a * x + 2.0 * b) * x + m0) / h};
+}
+
+double Course::missed_at(std::size_t sample) const {
+  const std::size_t last = values_.size() - 1;
+  if (sample == 0 || sample == last) return 0.0;
+  const std::size_t from = sample - 1, to = sample + 1;
+  const auto slope = [&](std::size_t a, std::size_t b) {
+    return (values_[b] - values_[a]) / (time_s_[b] - time_s_[a]);
+  };
+  const double before = slope(from < 2 ? from : from - 2, to), after = slope(from, to + 2 > last ? to : to + 2);
+  return values_[sample] - cubic(from, to, before, after, time_s_[sample]).first;
+}
+
+std::size_t Course::interval_of(double time_s) const {
+  // Sampling is nearly uniform: the place is guessed, and looked for where the guess is wrong.
+  const double share = (time_s - time_s_.front()) / (time_s_.back() - time_s_.front());
+  const auto k =
+      std::min(static_cast<std::size_t>(share * static_cast<double>(time_s_.size() - 1)), time_s_.size() - 2);
+  if (time_s >= time_s_[k] && time_s < time_s_[k + 1]) return k;
+  return static_cast<std::size_t>(std::ranges::upper_bound(time_s_, time_s) - time_s_.begin()) - 1;
+}
+
+double Course::missed_in(std::size_t interval) const {
+  return std::max(std::abs(missed_[interval]), std::abs(missed_[interval + 1]));
+}
+
+double Course::variance_at(double time_s) const {
+  if (time_s <= time_s_.front() || time_s >= time_s_.back()) return 0.0;
+  const std::size_t k = interval_of(time_s);
+  const double x = (time_s - time_s_[k]) / (time_s_[k + 1] - time_s_[k]);
+  return share_between(x) * missed_in(k) * missed_in(k);
+}
+
+double Course::mean_variance() const {
+  double sum = 0.0;
+  for (std::size_t k = 0; k + 1 < time_s_.size(); ++k)
+    sum += missed_in(k) * missed_in(k) * (time_s_[k + 1] - time_s_[k]);
+  return kMeanShare * sum / (time_s_.back() - time_s_.front());
 }
 
 std::pair<double, double> Course::at(double time_s) const {
   if (time_s <= time_s_.front()) return {values_.front(), 0.0};
   if (time_s >= time_s_.back()) return {values_.back(), 0.0};
-  // Sampling is nearly uniform: the place is guessed, and looked for where the guess is wrong.
-  const double share = (time_s - time_s_.front()) / (time_s_.back() - time_s_.front());
-  auto k = std::min(static_cast<std::size_t>(share * static_cast<double>(time_s_.size() - 1)), time_s_.size() - 2);
-  if (time_s < time_s_[k] || time_s >= time_s_[k + 1])
-    k = static_cast<std::size_t>(std::ranges::upper_bound(time_s_, time_s) - time_s_.begin()) - 1;
-  const double h = time_s_[k + 1] - time_s_[k], x = (time_s - time_s_[k]) / h;
-  const double y0 = values_[k], y1 = values_[k + 1], m0 = slopes_[k] * h, m1 = slopes_[k + 1] * h;
-  const double a = 2.0 * (y0 - y1) + m0 + m1, b = 3.0 * (y1 - y0) - 2.0 * m0 - m1;
-  return {((a * x + b) * x + m0) * x + y0, ((3.0 * a * x + 2.0 * b) * x + m0) / h};
+  const std::size_t k = interval_of(time_s);
+  return cubic(k, k + 1, slopes_[k], slopes_[k + 1], time_s);
 }
 
 VectorXd smooth_slope(const VectorXd& values, double interval_s) {

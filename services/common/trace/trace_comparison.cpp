@@ -34,10 +34,17 @@ struct Pair {
   bool input = false;
   bool stands_still = false;  ///< the recording, while the simulation moves
   VectorXd recorded, simulated;
+  VectorXd between;  ///< variance of what the simulation's samples leave open of it
   Course course;
   double least_variance = 0.0;  ///< rounding of the arithmetic
   double step_variance = 0.0;   ///< of the steps in which both are written
   double white_variance = 0.0;  ///< of the recording's noise from sample to sample
+};
+
+/// What may drive the simulation, as recorded.
+struct Drive {
+  std::string name;
+  VectorXd values;
 };
 
 /// The misfit of a course and what a test says of it.
@@ -199,7 +206,7 @@ class Comparison {
     const bool input = std::ranges::find(options_.inputs, channel.name) != options_.inputs.end();
     if (simulated == nullptr) {
       out_.only_recorded.push_back(channel.name);
-      drives_.push_back(values);
+      drives_.push_back({channel.name, values});
       return;
     }
     Pair pair{.name = channel.name,
@@ -207,16 +214,20 @@ class Comparison {
               .input = input,
               .recorded = values,
               .simulated = values,
+              .between = values,
               .course = Course(simulated_.time_s, simulated->values)};
-    for (Index k = 0; k < values.size(); ++k)
-      pair.simulated(k) = pair.course.at(out_.time_s[static_cast<std::size_t>(k)]).first;
+    for (Index k = 0; k < values.size(); ++k) {
+      const double time_s = out_.time_s[static_cast<std::size_t>(k)];
+      pair.simulated(k) = pair.course.at(time_s).first;
+      pair.between(k) = pair.course.variance_at(time_s);
+    }
     const double spread = std::sqrt((values.array() - values.mean()).square().mean());
     pair.least_variance = std::max(std::pow(kLeastOfTheSpread * spread, 2), 1e-300);
     pair.white_variance =
         std::max(pair.least_variance, std::pow(signal::estimate_noise_floor(channel.values).standard_deviation, 2));
     for (const std::vector<double>* series : {&channel.values, &simulated->values})
       pair.step_variance += std::pow(signal::estimate_noise_floor(*series).quantisation_step, 2) / 12.0;
-    if (input) drives_.push_back(values);
+    if (input) drives_.push_back({channel.name, values});
     pairs_.push_back(std::move(pair));
   }
 
@@ -229,7 +240,8 @@ class Comparison {
     const double moved = variance(pair.recorded);
     if (!(variance(pair.simulated) > moved) || moved > kOfTheNoise * (pair.white_variance + pair.step_variance))
       return false;
-    const auto fit = fit_alteration(out_.time_s, {altered(pair)}, {.gain = true, .offset = true}, joints_);
+    const Freedom freedom{.gain = true, .offset = true};
+    const auto fit = fit_alteration(out_.time_s, {altered(pair, freedom)}, freedom, joints_);
     return fit && follows_nothing(*fit, {.gain = true});
   }
 
@@ -248,8 +260,10 @@ class Comparison {
         }
   }
 
-  /// What a simulation's faults leave behind, of a course on the common times.
-  [[nodiscard]] std::vector<RegressorGroup> groups_of(const VectorXd& s, double effective_samples) const {
+  /// What a simulation's faults leave behind, of a channel's course on the common times. An input does not drive itself:
+  /// as recorded it has the noise that is judged.
+  [[nodiscard]] std::vector<RegressorGroup> groups_of(const std::string& channel, const VectorXd& s,
+                                                      double effective_samples) const {
     const Index n = s.size();
     const VectorXd one = VectorXd::Ones(n), v = slope_of(s), a = slope_of(v);
     const double begin_s = out_.time_s.front(), length_s = out_.time_s.back() - begin_s;
@@ -263,7 +277,8 @@ class Comparison {
     for (const VectorXd& saturated : saturations(motion_.size() > 0 ? motion_ : v)) regimes.push_back(saturated);
     groups.push_back({"motion and level", beside(regimes)});
     std::vector<VectorXd> shapes{one, a, s.cwiseProduct(s), v.cwiseProduct(v.cwiseAbs())};
-    for (const VectorXd& drive : drives_) shapes.push_back(drive), shapes.push_back(slope_of(drive));
+    for (const Drive& drive : drives_)
+      if (drive.name != channel) shapes.push_back(drive.values), shapes.push_back(slope_of(drive.values));
     groups.push_back({"curvature and drive", beside(shapes)});
     constexpr double kMostPieces = 8.0, kSamplesAPiece = 12.0;
     const auto pieces = static_cast<Index>(std::clamp(effective_samples / kSamplesAPiece, 1.0, kMostPieces));
@@ -304,15 +319,18 @@ class Comparison {
     return {{"scatter in motion and at rest", beside(motion)}, {"scatter in time", beside(pieces)}};
   }
 
-  [[nodiscard]] Judged judge(const Pair& pair, const VectorXd& course, Index first, Index count) const {
+  /// `between`: variance of what the simulation's samples leave open of the course.
+  [[nodiscard]] Judged judge(const Pair& pair, const VectorXd& course, const VectorXd& between, Index first,
+                             Index count) const {
     const VectorXd left = (pair.recorded - course).segment(first, count);
-    std::vector<RegressorGroup> groups = groups_of(course, static_cast<double>(count));
+    std::vector<RegressorGroup> groups = groups_of(pair.name, course, static_cast<double>(count));
     std::vector<RegressorGroup> partitions = partitions_of(course);
     for (std::vector<RegressorGroup>* list : {&groups, &partitions})
       for (RegressorGroup& group : *list) group.columns = MatrixXd(group.columns.middleRows(first, count));
     Judged judged{.squares = left.squaredNorm() / static_cast<double>(count), .test = {}};
-    judged.test = test_noise(left, groups, partitions, {pair.least_variance, pair.step_variance},
-                             joints_within(joints_, first, count));
+    judged.test =
+        test_noise(left, groups, partitions, {pair.least_variance, pair.step_variance, between.segment(first, count)},
+                   joints_within(joints_, first, count));
     judged.test.noise_std = std::min(judged.test.noise_std, std::sqrt(judged.squares));
     return judged;
   }
@@ -323,7 +341,7 @@ class Comparison {
     ChannelComparison out;
     out.name = pair.name, out.unit = pair.unit, out.input = pair.input;
     const VectorXd difference = pair.recorded - pair.simulated;
-    const Judged judged = judge(pair, pair.simulated, 0, difference.size());
+    const Judged judged = judge(pair, pair.simulated, pair.between, 0, difference.size());
     out.recorded.assign(pair.recorded.begin(), pair.recorded.end());
     out.simulated.assign(pair.simulated.begin(), pair.simulated.end());
     out.rms = std::sqrt(judged.squares);
@@ -345,9 +363,17 @@ class Comparison {
     return out;
   }
 
-  [[nodiscard]] static AlteredChannel altered(const Pair& pair, double about = 0.0) {
-    return {
-        .recorded = pair.recorded, .simulated = &pair.course, .about = about, .least_variance = pair.least_variance};
+  /// An altered time lies between samples, and so it may where it was on one.
+  [[nodiscard]] static VectorXd between(const Pair& pair, const Freedom& freedom) {
+    if (!freedom.delay && !freedom.clock) return pair.between;
+    return VectorXd::Constant(pair.between.size(), pair.course.mean_variance());
+  }
+
+  [[nodiscard]] static AlteredChannel altered(const Pair& pair, const Freedom& freedom, double about = 0.0) {
+    return {.recorded = pair.recorded,
+            .simulated = &pair.course,
+            .about = about,
+            .least_variance = pair.least_variance + between(pair, freedom).mean()};
   }
 
   [[nodiscard]] static std::vector<AlteredParameter> parameters_of(const AlterationFit& fit, const Freedom& freedom,
@@ -370,7 +396,7 @@ class Comparison {
     out.would_do = true;
     double before = 0.0, after = 0.0;
     for (std::size_t k = 0; k < pairs.size(); ++k) {
-      const Judged left = judge(*pairs[k], fit.altered[k], fit.first, fit.count);
+      const Judged left = judge(*pairs[k], fit.altered[k], between(*pairs[k], freedom), fit.first, fit.count);
       const double noise = pairs[k]->white_variance;
       const VectorXd raw = pairs[k]->recorded - pairs[k]->simulated;
       before += std::max(raw.squaredNorm() / static_cast<double>(raw.size()) / noise - 1.0, 0.0);
@@ -421,7 +447,7 @@ class Comparison {
   }
 
   void ask(const Way& way, const Pair& pair, ChannelComparison& out) const {
-    const std::vector<AlteredChannel> channels{altered(pair)};
+    const std::vector<AlteredChannel> channels{altered(pair, way.freedom)};
     const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, channels, way.freedom, joints_);
     if (!fit || follows_nothing(*fit, way.freedom)) return;
     std::string id = way.id;
@@ -454,7 +480,7 @@ class Comparison {
   void ask_common(const char* id, const char* where, const std::vector<const Pair*>& pairs, const Freedom& freedom,
                   bool about_start) {
     std::vector<AlteredChannel> channels;
-    for (const Pair* pair : pairs) channels.push_back(altered(*pair, about_start ? pair->simulated(0) : 0.0));
+    for (const Pair* pair : pairs) channels.push_back(altered(*pair, freedom, about_start ? pair->simulated(0) : 0.0));
     const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, channels, freedom, joints_);
     if (fit && !follows_nothing(*fit, freedom)) out_.common.push_back(judged(id, where, pairs, *fit, freedom));
   }
@@ -464,7 +490,7 @@ class Comparison {
     Alteration all{.id = "input_bias", .where = "input", .parameters = {}, .removed_share = 1.0, .would_do = true};
     for (const Pair* pair : driven) {
       const Freedom freedom{.offset = true};
-      const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, {altered(*pair)}, freedom, joints_);
+      const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, {altered(*pair, freedom)}, freedom, joints_);
       if (!fit) return;
       Alteration one = judged(all.id, all.where, {pair}, *fit, freedom);
       one.parameters.front().name = "offset of " + pair->name;
@@ -529,7 +555,7 @@ class Comparison {
   std::vector<Index> present_;        ///< which of them are common times
   Joints joints_;                     ///< of the common times
   std::vector<Pair> pairs_;
-  std::vector<VectorXd> drives_;  ///< inputs, and what only the recording has
+  std::vector<Drive> drives_;  ///< inputs, and what only the recording has
   VectorXd motion_;
   TraceComparison out_;
 };

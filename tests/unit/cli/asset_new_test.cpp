@@ -70,6 +70,30 @@ TEST_F(AssetNew, ATimeInMillisecondsByItsNameIsTakenForThat) {
   EXPECT_EQ(asset->channel_map.columns.at("time").unit, "ms");
 }
 
+// A count of samples rises as time does.
+TEST_F(AssetNew, AColumnThatIsCalledByAUnitOfTimeIsTheTime) {
+  ASSERT_EQ(make("sample,ms,motor_voltage [V],position [mm]\n0,0,1,60\n1,10,1,60\n2,20,1,59\n"), kOk);
+  const Result<AssetConfig> asset = load_asset(path("a.yaml"));
+  ASSERT_TRUE(asset) << asset.error().describe();
+  EXPECT_EQ(asset->channel_map.columns.at("time").column, "ms");
+  EXPECT_EQ(asset->channel_map.columns.at("time").unit, "ms");
+}
+
+TEST_F(AssetNew, OfTwoColumnsWithOneHeaderThePlaceIsWritten) {
+  ASSERT_EQ(make("time [s],motor_voltage [V],position [mm],position [mm]\n0,1,60,0\n1,1,60,0\n2,1,59,0\n"), kOk);
+  const Result<AssetConfig> asset = load_asset(path("a.yaml"));
+  ASSERT_TRUE(asset) << asset.error().describe();
+  EXPECT_EQ(asset->channel_map.columns.at("position").column, "column 3");
+}
+
+TEST_F(AssetNew, OfALogWithManyColumnsSomeAreNamed) {
+  std::string header = "time", row = "0";
+  for (int k = 0; k < 200; ++k) header += ",Ei" + std::to_string(k) + " [mm/kg]", row += ",1";
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(make((header + "\n" + row + "\n").c_str()), kBadInput);
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), ::testing::HasSubstr("Ei28 [mm/kg], and 171 more; known are"));
+}
+
 TEST_F(AssetNew, TestsInOneFileAndRowsWithHolesAreSeen) {
   ASSERT_EQ(make("t [s],motor_voltage [V],position [mm]\n0,1,60\n1,1,\n2,1,59\n0,1,60\n1,1,59\n"), kOk);
   const Result<AssetConfig> asset = load_asset(path("a.yaml"));

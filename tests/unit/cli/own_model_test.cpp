@@ -7,6 +7,7 @@
 
 #include "sealwatch/estimation/actuator_fit.hpp"
 #include "sealwatch/model/simulation.hpp"
+#include "services/cli/runaway.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "tests/unit/runtime/yaml_place.hpp"
 
@@ -180,6 +181,52 @@ TEST(OwnModel, WithoutNoiseNothingIsAdmissible) {
   const JointFit fit = fit_actuator(asset, std::span(&still, 1), {});
   EXPECT_FALSE(fit.report.admissible);
   EXPECT_THAT(fit.report.reasons, ::testing::Contains(::testing::HasSubstr("noise_std")));
+}
+
+constexpr const char* kPendulum = R"yaml(name: standing_pendulum
+meaning: a pendulum that stands on a fixed pivot
+inputs:
+  u: {unit: N m, meaning: torque}
+outputs:
+  angle: {value: phi, unit: rad, noise_std: 1.0e-4, meaning: from upright}
+parameters:
+  g: {value: GRAVITY, unit: 1/s2, min: -30, max: 30, meaning: gravity over length}
+  d: {value: 0.2, unit: 1/s, meaning: friction of the bearing}
+  J: {value: 0.1, unit: kg m2, meaning: inertia}
+states:
+  phi: {der: w, unit: rad, start: angle}
+  w: {der: g*sin(phi) - d*w + u/J, unit: rad/s, start: 0, size: 1.0}
+elements: {}
+law_sizes: {}
+)yaml";
+
+// What stands falls, whatever the parameters: a controller held the machine, and its torque alone cannot. One that hangs
+// swings, and two integrators in a row let errors grow as the time does: both are as well followed as any.
+TEST(OwnModel, APlantThatRunsAwayIsTold) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 1.0e-4);
+  TimeSeries samples;
+  Series torque{.name = "u", .unit = "N m", .values = {}};
+  Series angle{.name = "angle", .unit = "rad", .noise_std = 1.0e-4, .values = {}};
+  for (int k = 0; k < 801; ++k) {
+    samples.time_s.push_back(0.01 * k);
+    torque.values.push_back(0.01 * std::sin(0.02 * k));
+    angle.values.push_back(0.02 * std::cos(0.03 * k) + noise(random));
+  }
+  samples.channels = {torque, angle};
+  const auto found_with = [&](const std::string& name, const std::string& gravity) {
+    std::string plant = kPendulum;
+    plant.replace(plant.find("GRAVITY"), 7, gravity);
+    plant.replace(plant.find("standing"), 8, name);
+    const testing::YamlPlace place;
+    return find_runaway(asset_of(place, plant, ""), samples);
+  };
+  const auto standing = found_with("standing", "20");
+  ASSERT_TRUE(standing);
+  EXPECT_EQ(standing->channel, "angle");
+  EXPECT_GT(standing->decades, 8.0) << "exp(4.4 t) over 8 s are 15";
+  EXPECT_FALSE(found_with("hanging", "-20"));
+  EXPECT_FALSE(found_with("weightless", "0"));
 }
 
 }  // namespace

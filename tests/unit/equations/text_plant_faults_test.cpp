@@ -61,6 +61,39 @@ std::string faults_of(const std::string& text) {
 
 TEST(PlantFile, OfTheTestsIsSound) { EXPECT_EQ(faults_of(kSound), ""); }
 
+// A winding and a shaft: N m/A follows from N m and A, and A from ohm and ohm/A2, which follow from V and A.
+const std::string kMotor = R"(name: motor
+meaning: a motor with an inertia
+inputs:
+  u: {unit: V, meaning: armature voltage}
+outputs:
+  current: {value: i, unit: A, noise_std: 0.01, meaning: armature current}
+  speed: {value: w, unit: rad/s, noise_std: 0.2, meaning: its speed}
+parameters:
+  R: {value: 1.2, unit: Ohm, meaning: resistance}
+  L: {value: 3.0e-3, unit: H, meaning: inductance}
+  c: {value: 0.06, unit: V s, meaning: motor constant}
+  J: {value: 2.0e-4, unit: kg m2, meaning: inertia, estimate: true}
+states:
+  i: {der: (u - R*i - c*w - u_lost)/L, unit: A, start: current}
+  w: {der: (c*i - lost)/J, unit: rad/s, start: speed}
+elements:
+  winding: {meaning: its voltages, sites: [{kind: winding_voltage, symbol: u_lost, signals: {current: i, speed: w}}]}
+  shaft: {meaning: its torques, sites: [{kind: shaft_torque, symbol: lost, signals: {speed: w, current: i}}]}
+law_sizes: SIZES
+)";
+
+TEST(PlantFile, EachSizeOfLawsIsKnownOrMissing) {
+  const std::string shaft = "N m: 0.1, N m s/rad: 0.1, rad/s: 3, s: 1";
+  for (const char* enough : {", V: 1, A: 1}", ", ohm: 2, ohm/A2: 0.1}"}) {
+    const auto plant = read_plant_file(written("motor", "#NAME\n" + with(kMotor, "SIZES", "{" + shaft + enough)));
+    ASSERT_TRUE(plant) << enough << plant.error().front().describe();
+    for (const char* unit : {"ohm", "ohm/A2", "N m/A", "A"}) EXPECT_TRUE(plant->text.law_sizes.contains(unit)) << unit;
+  }
+  EXPECT_NE(faults_of("#NAME\n" + with(kMotor, "SIZES", "{" + shaft + ", V: 1}")).find("'A': is missing"),
+            std::string::npos);
+}
+
 TEST(PlantFile, ABadNumberIsOneFault) {
   for (const char* number : {".nan", "\"20,0\""}) {
     const std::string faults =

@@ -356,6 +356,37 @@ TEST_F(ForeignLog, ACellWithoutADigitIsMissingAsAnEmptyOneIs) {
               HasSubstr("must be a number"));
 }
 
+// Excel and controllers in Europe: each cell in quotes, a comma between cells and in numbers.
+TEST_F(ForeignLog, ADecimalCommaInQuotesIsOneBetweenCommas) {
+  const ChannelMap map = map_of({{"time", {.column = "Zeit", .unit = "iso8601"}},
+                                 {"pressure_a", {.column = "Druck A", .unit = "barg"}},
+                                 {"position", {.column = "Weg", .unit = "mm"}}});
+  expect_two_rows(read(R"("Zeit","Druck A","Weg"
+"2031-04-12T03:00:00","1,0","60,0"
+"2031-04-12T03:00:00.5","1,5","59,0"
+)",
+                       map));
+  EXPECT_THAT(error_of("Zeit,Druck A,Weg\n2031-04-12T03:00:00,\"1,013\",60\n2031-04-12T03:00:01,\"1,014\",60\n", map),
+              HasSubstr("separators of thousands"));
+}
+
+TEST_F(ForeignLog, OfTwoColumnsWithOneHeaderTheMapNamesThePlace) {
+  const std::string text = "time[s],Druck,Druck,Weg\n0,9,1,60\n0.5,9,1.5,59\n";
+  ChannelMap map =
+      map_of({{"pressure_a", {.column = "column 3", .unit = "barg"}}, {"position", {.column = "Weg", .unit = "mm"}}});
+  expect_two_rows(read(text, map));
+  map.columns["pressure_a"].column = "Druck";
+  EXPECT_THAT(error_of(text, map), HasSubstr("stands over columns 2 and 3; give the whole header cell, or its place: "
+                                             "column 2"));
+}
+
+TEST_F(ForeignLog, ASignThatMakesACommentOfTheHeaderIsNoColumn) {
+  const ChannelMap map = map_of({{"time", {.column = "t", .unit = "s"}},
+                                 {"pressure_a", {.column = "p", .unit = "barg"}},
+                                 {"position", {.column = "x", .unit = "mm"}}});
+  for (const char* sign : {"%", "#"}) expect_two_rows(read(std::string(sign) + " t p x\n0 1 60\n0.5 1.5 59\n", map));
+}
+
 TEST_F(ForeignLog, ASeparatorOfThousandsIsNamed) {
   EXPECT_THAT(
       error_of("Zeit;Druck A;Weg [mm]\n2031-04-12T03:00:00;1,5;60\n2031-04-12T03:00:00.2;1.234,5;60\n", kGermanMap),

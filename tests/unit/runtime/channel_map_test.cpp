@@ -97,9 +97,6 @@ INSTANTIATE_TEST_SUITE_P(
             "not 10,5"},
         BadMap{"delimiter", "log: {delimiter: ';'}\n",
                "map.yaml: line 1, key log.delimiter: ';': is not known; known are: comma, semicolon, tab, bar, blank"},
-        BadMap{"two_commas", "log: {delimiter: comma, decimal: comma}\n",
-               "map.yaml: line 1, key log.decimal: 'comma': cannot be the decimal sign and between columns; delimiter: "
-               "semicolon, or tab"},
         BadMap{"rows", "log: {header_row: 5, first_row: 5}\n",
                "map.yaml: line 1, key log.first_row: '5': must come after header_row and units_row"},
         BadMap{"row", "log: {header_row: 0}\n",

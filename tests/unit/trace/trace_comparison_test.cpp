@@ -195,6 +195,69 @@ TEST(Trace, AnOffsetOfTheInputShiftsAllThatItDrives) {
   EXPECT_NEAR(found.answer[0].parameters[1].value, 2e5, 4.0 * found.answer[0].parameters[1].std_error);
 }
 
+/// A drive in ramps with corners, as a controller commands it without noise, and a first-order lag behind it, exact.
+TimeSeries driven(double interval_s, double clock = 1.0) {
+  constexpr double kLag = 0.4, kLength = 30.0;
+  const std::vector<std::pair<double, double>> ramps = {{2.0, 4.0},  {5.0, -4.0},  {7.0, -9.0},  {11.0, 9.0},
+                                                        {14.0, 5.0}, {15.5, -5.0}, {21.0, -3.0}, {26.0, 3.0}};
+  Series drive{.name = "drive", .unit = "V", .values = {}}, speed{.name = "speed", .unit = "m/s", .values = {}};
+  TimeSeries out;
+  for (int k = 0; k * interval_s <= kLength; ++k) {
+    const double t = k * interval_s / clock;
+    out.time_s.push_back(k * interval_s);
+    double u = 0.0, v = 0.0;
+    for (const auto& [begin, slope] : ramps) {
+      const double since = std::max(t - begin, 0.0);
+      u += slope * since, v += slope * (since - kLag * (1.0 - std::exp(-since / kLag)));
+    }
+    drive.values.push_back(u), speed.values.push_back(v);
+  }
+  out.channels = {drive, speed};
+  return out;
+}
+
+/// Noise on the speed alone, and `drive_std` on the drive.
+TimeSeries measured(TimeSeries series, double drive_std, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  for (double& value : series.channels[0].values) value += drive_std * normal(random);
+  for (double& value : series.channels[1].values) value += 0.02 * normal(random);
+  return series;
+}
+
+TraceComparison compare_driven(const TimeSeries& recorded, const TimeSeries& simulated) {
+  Options options;
+  options.inputs = {"drive"};
+  const auto result = compare_traces(recorded, simulated, options);
+  EXPECT_TRUE(result) << result.error().describe();
+  return result ? *result : TraceComparison{};
+}
+
+// What lies between the simulation's samples is not known: at a corner no course through them finds it.
+TEST(Trace, AnInputWithCornersThatIsSampledAtOtherTimesIsTheSame) {
+  for (const double interval_s : {0.02, 0.0137, 0.05}) {
+    EXPECT_TRUE(compare_driven(measured(driven(interval_s), 0.0, 3), driven(0.01)).consistent) << interval_s;
+    EXPECT_TRUE(compare_driven(measured(driven(interval_s), 0.0, 4), driven(0.031)).consistent) << interval_s;
+  }
+}
+
+TEST(Trace, NoiseOfARecordedInputIsNoDifference) {
+  for (const double drive_std : {0.1, 1.0, 5.0}) {
+    const TraceComparison found = compare_driven(measured(driven(0.01), drive_std, 5), driven(0.01));
+    EXPECT_TRUE(found.consistent) << drive_std;
+    EXPECT_NEAR(found.channels[0].noise_std, drive_std, 0.1 * drive_std);
+  }
+}
+
+TEST(Trace, AClockIsOneCauseOfTheInputToo) {
+  for (const double drive_std : {0.0, 0.02}) {
+    const TraceComparison found = compare_driven(measured(driven(0.01, 1.02), drive_std, 6), driven(0.01));
+    ASSERT_THAT(found.answer, SizeIs(1)) << drive_std;
+    EXPECT_EQ(found.answer[0].id, "clock_rate");
+    EXPECT_NEAR(found.answer[0].parameters[0].value, 1.02, 1e-4);
+  }
+}
+
 /// Without the rows that `lost` says.
 TimeSeries without(const TimeSeries& series, const std::function<bool(std::size_t)>& lost) {
   TimeSeries out;

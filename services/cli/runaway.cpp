@@ -1,0 +1,83 @@
+#include "services/cli/runaway.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "sealwatch/model/simulation.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+constexpr double kTold = 4.0;  // decades: a start that is known to a ten-thousandth of the signal tells nothing then
+constexpr std::size_t kFewestSamples = 10;
+
+TimeSeries piece_of(const TimeSeries& recorded, std::size_t first, std::size_t count) {
+  const auto cut = [&](const std::vector<double>& values) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
+    return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(count));
+  };
+  TimeSeries piece = recorded;
+  piece.time_s = cut(recorded.time_s);
+  for (Series& channel : piece.channels) channel.values = cut(channel.values);
+  return piece;
+}
+
+/// Of each output that shows one state alone, the decades by which an error in that state's start has grown by the end.
+std::map<std::string, double> growth_in(const AssetConfig& asset, const TimeSeries& piece) {
+  std::map<std::string, double> decades;
+  const auto simulation = PlantSimulation::create(asset, piece);
+  if (!simulation) return decades;
+  std::vector<FreeQuantity> starts;
+  for (std::size_t k = 0; k < (*simulation)->state_names().size(); ++k)
+    starts.push_back({FreeQuantity::Kind::initial_state, k});
+  const Result<SimulatedOutputs> outputs = (*simulation)->run((*simulation)->start(), starts);
+  if (!outputs) return decades;
+  const Eigen::Index channels = outputs->values.cols(), last = outputs->values.rows() - 1;
+  for (Eigen::Index c = 0; c < channels; ++c) {
+    const auto first = outputs->sensitivities.row(c);
+    Eigen::Index state = 0;
+    if (!(first.cwiseAbs().maxCoeff(&state) > 0.0) || (first.array() != 0.0).count() != 1) continue;
+    const double grown = std::abs(outputs->sensitivities(last * channels + c, state) / first(state));
+    if (std::isfinite(grown))
+      decades[(*simulation)->channels()[static_cast<std::size_t>(c)]] = std::log10(std::max(grown, 1e-300));
+  }
+  return decades;
+}
+
+}  // namespace
+
+std::optional<Runaway> find_runaway(const AssetConfig& asset, const TimeSeries& recorded) {
+  std::map<std::string, double> least;
+  for (const std::size_t pieces : {20, 10}) {  // what grows in pieces of one length alone does not run away
+    const std::size_t count = recorded.time_s.size() / pieces;
+    if (count < kFewestSamples) return std::nullopt;
+    std::map<std::string, double> decades;
+    for (std::size_t piece = 0; piece < pieces; ++piece)
+      for (const auto& [channel, grown] : growth_in(asset, piece_of(recorded, piece * count, count)))
+        decades[channel] += grown;
+    for (const auto& [channel, grown] : decades) {
+      const auto known = least.try_emplace(channel, grown).first;
+      known->second = std::min(known->second, grown);
+    }
+  }
+  std::optional<Runaway> most;
+  for (const auto& [channel, grown] : least)
+    if (grown > kTold && (!most || grown > most->decades)) most = {channel, grown};
+  return most;
+}
+
+void tell_runaway(const std::vector<Recording>& recordings, const AssetConfig& asset, const PlantDescription& plant) {
+  if (plant.file.empty() || recordings.empty()) return;
+  const std::optional<Runaway> found = find_runaway(asset, recordings.front().samples);
+  if (!found) return;
+  std::fprintf(stderr,
+               "sealwatch: warning: %s: the simulated plant runs away by itself: an error in the start of %s grows "
+               "10^%.0f-fold over the test. No simulation over the whole test can follow the machine, and what differs "
+               "says little of it: use shorter tests, or put what holds the machine, such as its controller, into the "
+               "plant's equations\n",
+               recordings.front().file.c_str(), found->channel.c_str(), found->decades);
+}
+
+}  // namespace sealwatch::cli

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "sealwatch/model/plant_description.hpp"
+
 namespace sealwatch::mismatch {
 namespace {
 
@@ -24,13 +26,15 @@ const ChannelComparison* most_improved_channel(const PooledFit& fit) {
 }
 
 // Which change of the test's conditions tells apart laws of these kinds.
-std::string separating_test(const FoundEffect& effect) {
+std::string separating_test(const FoundEffect& effect, bool is_stroke_test) {
   if (!effect.same_elements.empty() && effect.what.element.starts_with("sensor:"))
     return "Compare the sensor with a reference at rest, at two known values. No test can separate its error from the "
            "plant's.";
+  if (!is_stroke_test)
+    return "Record tests that separate these laws: with inputs that change at a third and at twice the rate, and over "
+           "another part of the range.";
   return "Record tests that separate these laws: one at a third and one at twice the ramp speed, one with a clearly "
-         "lower "
-         "and one with a clearly higher load, and one over another part of the stroke.";
+         "lower and one with a clearly higher load, and one over another part of the stroke.";
 }
 
 }  // namespace
@@ -85,18 +89,26 @@ std::string evidence_of(const FoundEffect& effect, std::size_t effects, double m
 }
 
 std::string next_test_of(const Explanation& explanation) {
+  const auto plant = find_plant(explanation.model);
+  const bool is_stroke_test = plant && (*plant)->has_load();
   for (const FoundEffect& effect : explanation.effects)
-    if (!effect.indistinguishable.empty()) return separating_test(effect);
+    if (!effect.indistinguishable.empty()) return separating_test(effect, is_stroke_test);
   if (explanation.verdict != Verdict::undetermined) return {};
   if (explanation.fit_recordings.size() < 2)
-    return "Record at least three more tests at other loads, speeds and strokes, and hold one of them out. In a single "
-           "recording, the parameters can absorb an effect, and nothing is left to prove a law on.";
+    return std::string("Record at least three more tests ") +
+           (is_stroke_test ? "at other loads, speeds and strokes" : "with inputs of other size, rate and range") +
+           ", and hold one of them out. In a single recording, the parameters can absorb an effect, and nothing is "
+           "left "
+           "to prove a law on.";
   if (!explanation.statistically_significant)
-    return "Record tests under new conditions: a load that differs by at least 20 %, half and twice the ramp speed, "
-           "and a "
-           "longer stroke. Include a rest and a hold of 3 s.";
-  return "Record the same asset at two further loads and speeds, with all available channels, and hold two of these "
-         "recordings out.";
+    return is_stroke_test
+               ? "Record tests under new conditions: a load that differs by at least 20 %, half and twice the ramp "
+                 "speed, and a longer stroke. Include a rest and a hold of 3 s."
+               : "Record tests under new conditions: inputs that change at half and at twice the rate, over a wider "
+                 "range. Include a rest and a hold.";
+  return std::string("Record the same asset ") +
+         (is_stroke_test ? "at two further loads and speeds" : "with two further courses of its inputs") +
+         ", with all available channels, and hold two of these recordings out.";
 }
 
 namespace {

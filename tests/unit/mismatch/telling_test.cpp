@@ -60,6 +60,23 @@ TEST(Summary, SaysOfASensorThatTheRecordingsShowIt) {
       << summary_of(found);
 }
 
+TEST(NextTest, SpeaksOfStrokesWhereThePlantHasThem) {
+  Explanation found;
+  found.verdict = Verdict::undetermined;
+  found.statistically_significant = true;
+  found.fit_recordings = {"one", "two"};
+  found.model = "eha";
+  EXPECT_NE(next_test_of(found).find("loads and speeds"), std::string::npos) << next_test_of(found);
+  found.model = "cascaded_tanks";
+  for (const bool significant : {true, false})
+    for (const std::size_t recordings : {1, 2}) {
+      found.statistically_significant = significant;
+      found.fit_recordings.resize(recordings);
+      for (const char* word : {"load", "ramp", "stroke"})
+        EXPECT_EQ(next_test_of(found).find(word), std::string::npos) << next_test_of(found);
+    }
+}
+
 TEST(Location, OfAnElementIsWhereItComesNearest) {
   FoundEffect overflow, saturation;
   overflow.what.element = "upper_outlet";

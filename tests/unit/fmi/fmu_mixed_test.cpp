@@ -265,7 +265,7 @@ TEST(FmuSettings, SetTextsAndSwitchesOnce) {
   }
   EXPECT_THAT(ImportedUnit(mixed("fmu_mixed2"), {{"tex", "a"}}).text(), HasSubstr("did you mean 'text'"));
   EXPECT_THAT(ImportedUnit(mixed("fmu_mixed2"), {{"last", "a"}}).text(), HasSubstr("as many numbers"));
-  EXPECT_THAT(ImportedUnit(mixed("fmu_mixed2"), {{"u_integer", "1"}}).text(), HasSubstr("no parameter"));
+  EXPECT_THAT(ImportedUnit(mixed("fmu_mixed2"), {{"u_integer", "1"}}).text(), HasSubstr("not a parameter"));
 }
 
 TEST(FmuSettings, StructuralParametersGiveArraysTheirSize) {
@@ -314,7 +314,7 @@ TEST(FmuInterface, StepsThatAUnitCannotDoAreNamed) {
   EXPECT_THAT(fault("", 0.15), HasSubstr("does equal steps alone"));
   EXPECT_EQ(fault(varies, 0.15), "");
   EXPECT_EQ(fault(varies + "fixedInternalStepSize=\"0.05\"", 0.15), "");
-  EXPECT_THAT(fault(varies + "fixedInternalStepSize=\"0.05\"", 0.12), HasSubstr("no whole number"));
+  EXPECT_THAT(fault(varies + "fixedInternalStepSize=\"0.05\"", 0.12), HasSubstr("not a whole number"));
 }
 
 TEST(FmuDerivatives, ThoseThatAUnitDoesNotHaveAreDifferences) {

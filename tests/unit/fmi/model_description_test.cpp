@@ -105,7 +105,7 @@ TEST(ModelDescription, ArraysHaveTheirElements) {
   EXPECT_EQ(description->variables[element->variable].start[element->element], 5.0);
   EXPECT_EQ(description->name_of(*element), "A[2,2]");
   for (const char* name : {"A[2,4]", "A[3,1]", "A[0,1]", "A[5]", "A[1,1,1]", "A[1,]", "A[]", "x[1,1]", "x[4]"})
-    EXPECT_THAT(description->find_element(name).error().describe(), HasSubstr("no variable")) << name;
+    EXPECT_THAT(description->find_element(name).error().describe(), HasSubstr("not a variable")) << name;
   EXPECT_THAT(refused(replaced(description_of(unit), "start=\"1 2 3 4 5 6\"", "start=\"1 2 3\"")),
               HasSubstr("each of the 6 elements"));
 }

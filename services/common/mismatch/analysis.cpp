@@ -44,6 +44,7 @@ Result<Explanation> Analysis::analyse() {
   if (!best_.effects.empty()) {
     tell("proving on held-out recordings", 0.75);
     prove();
+    if (best_.effects.empty() && !beside_) ask_the_datasheet_alone();
   }
   if (beside_ && best_.effects.empty()) fall_back_on_the_value();
   if (!lacks_a_pressure() && !why_none_ && time_.not_asked().empty()) look_again();

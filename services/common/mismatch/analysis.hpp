@@ -90,6 +90,7 @@ class Analysis {
   // What is fixed in the asset file may be wrong: laws and sensors' faults are then bent to it, or none is found. (In a
   // gross misfit without a law a value takes up some of whatever is missing.)
   void ask_the_datasheet();
+  void ask_the_datasheet_alone();
   // Values that took the place of laws while these were searched are off, where the held-out recordings bear them out and
   // laws are beside them. Else the laws again: what values do alone is asked in the end, all that do it alike.
   void take_values_found();

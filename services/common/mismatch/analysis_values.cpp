@@ -52,6 +52,15 @@ void Analysis::ask_the_datasheet() {
   instead_of_ = laws;
 }
 
+// Laws that held-out recordings do not bear out leave what they explained to a value.
+void Analysis::ask_the_datasheet_alone() {
+  result_.asset_values.clear();
+  if (!time_.in_time("the values that the asset file fixes, without the laws that were not proven")) return;
+  ask_the_datasheet();
+  time_.allow(1.0);
+  if (why_none_) take_no_law();
+}
+
 void Analysis::take_values_found() {
   if (naming_.freed.empty()) return;
   const Naming laws = *naming_.with_laws;

@@ -67,7 +67,8 @@ TEST_F(RetractionEffect, WhatTheJournalsDoNotKnowIsNotSent) {
               HasSubstr("that the services know; did you mean '" + std::string(kApril)));
   EXPECT_EQ(said(objection(known, since("2009-04-02"))), "") << "tests that were set aside are not among them";
   EXPECT_EQ(said(objection(known, withdraw(kTaken))), "");
-  EXPECT_THAT(said(objection(known, withdraw("cmms-4711"))), HasSubstr("is neither a retraction nor a replacement of XT03/MV2 in force"));
+  EXPECT_THAT(said(objection(known, withdraw("cmms-4711"))),
+              HasSubstr("is neither a retraction nor a replacement of XT03/MV2 in force"));
   EXPECT_EQ(said(objection(known, withdraw(kElsewhere))), "") << "another service may hold it still";
 }
 

@@ -97,9 +97,8 @@ std::string next_test_of(const Explanation& explanation) {
   if (explanation.fit_recordings.size() < 2)
     return std::string("Record at least three more tests ") +
            (is_stroke_test ? "at other loads, speeds and strokes" : "with inputs of other size, rate and range") +
-           ", and hold one of them out. In a single recording, the parameters can absorb an effect, and nothing is "
-           "left "
-           "to prove a law on.";
+           ", and hold one of them out. In a single recording, the parameters can absorb an effect, and "
+           "nothing is left to prove a law on.";
   if (!explanation.statistically_significant)
     return is_stroke_test
                ? "Record tests under new conditions: a load that differs by at least 20 %, half and twice the ramp "
@@ -130,9 +129,9 @@ std::string found_in_words(const std::vector<FoundEffect>& effects) {
 
 constexpr double kNoLarger = 1.05;  // times the noise, whose own size is known no better
 
-// Samples that count less are part of what is reported.
+// Samples that count less are part of what is reported. What those that count miss alike is not the input's.
 std::string hidden_by_the_input(const ChannelComparison* worst) {
-  if (worst == nullptr || worst->rms_before < kNoLarger) return {};
+  if (worst == nullptr || worst->rms_before < kNoLarger * std::max(1.0, worst->weighed_rms_after)) return {};
   return " What the input did between samples may account for the misfit of " + in_words(worst->channel) + " (" +
          number(worst->rms_before) + " times the noise). Record the input faster to see what it hides.";
 }

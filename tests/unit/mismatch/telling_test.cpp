@@ -107,7 +107,10 @@ TEST(Summary, SaysWhatTheInputMayHide) {
   EXPECT_NE(summary_of(found).find("may account for the misfit of motor current (1.6 times the noise)"),
             std::string::npos)
       << summary_of(found);
-  found.fit.channels.front().rms_before = 1.03;
+  found.fit.channels.front().weighed_rms_after = 1.6;
+  EXPECT_EQ(summary_of(found).find("input"), std::string::npos)
+      << "samples that count miss as much: " << summary_of(found);
+  found.fit.channels.front() = {.channel = "motor_current", .rms_before = 1.03, .weighed_rms_after = 1.0};
   EXPECT_EQ(summary_of(found).find("input"), std::string::npos) << summary_of(found);
 }
 

@@ -36,7 +36,7 @@ inline constexpr double kUsualSensorTolerance = 0.0025;
 /// What the sensors of the simulated channels are off by, with the asset's tolerances or the usual ones.
 [[nodiscard]] std::vector<KnownValue> known_sensors(const AssetConfig& asset, const PemProblem& problem);
 
-/// What the sensors of measured inputs are off by. They are no channel that laws could be told from: never exact.
+/// What the sensors of measured inputs are off by. Never taken for exact: no simulated channel stands beside theirs.
 [[nodiscard]] std::vector<KnownValue> known_inputs(const AssetConfig& asset, const PemProblem& problem);
 
 /// What a law of a sensor's gain or offset is called there; "" of other laws.

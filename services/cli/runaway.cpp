@@ -6,23 +6,13 @@
 #include <map>
 
 #include "sealwatch/model/simulation.hpp"
+#include "services/common/estimation/rows_of.hpp"
 
 namespace sealwatch::cli {
 namespace {
 
 constexpr double kTold = 4.0;  // decades: a start that is known to a ten-thousandth of the signal tells nothing then
 constexpr std::size_t kFewestSamples = 10;
-
-TimeSeries piece_of(const TimeSeries& recorded, std::size_t first, std::size_t count) {
-  const auto cut = [&](const std::vector<double>& values) {
-    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
-    return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(count));
-  };
-  TimeSeries piece = recorded;
-  piece.time_s = cut(recorded.time_s);
-  for (Series& channel : piece.channels) channel.values = cut(channel.values);
-  return piece;
-}
 
 /// Of each output that shows one state alone, the decades by which an error in that state's start has grown by the end.
 std::map<std::string, double> growth_in(const AssetConfig& asset, const TimeSeries& piece) {
@@ -55,7 +45,7 @@ std::optional<Runaway> find_runaway(const AssetConfig& asset, const TimeSeries& 
     if (count < kFewestSamples) return std::nullopt;
     std::map<std::string, double> decades;
     for (std::size_t piece = 0; piece < pieces; ++piece)
-      for (const auto& [channel, grown] : growth_in(asset, piece_of(recorded, piece * count, count)))
+      for (const auto& [channel, grown] : growth_in(asset, rows_of(recorded, piece * count, (piece + 1) * count)))
         decades[channel] += grown;
     for (const auto& [channel, grown] : decades) {
       const auto known = least.try_emplace(channel, grown).first;

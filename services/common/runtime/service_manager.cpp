@@ -1,19 +1,37 @@
 #include "services/common/runtime/service_manager.hpp"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/file.h>
 #include <systemd/sd-daemon.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <thread>
 
 namespace sealwatch {
 namespace {
 
 const std::string kAnother = "another ";
+constexpr std::chrono::milliseconds kUntilOwnerIsWritten{1000}, kBetweenLooks{10};
+
+/// The process that the locked file names; empty where none is said. Between its lock and its number an owner leaves the
+/// file empty, or with the number of one that ended: it is read again until it names a process that lives.
+std::string owner_of(int descriptor) {
+  const auto end = std::chrono::steady_clock::now() + kUntilOwnerIsWritten;
+  for (;; std::this_thread::sleep_for(kBetweenLooks)) {
+    std::array<char, 32> text{};
+    const bool said = ::pread(descriptor, text.data(), text.size() - 1, 0) > 0;
+    const pid_t process = said ? static_cast<pid_t>(std::atol(text.data())) : 0;
+    if (process > 0 && (::kill(process, 0) == 0 || errno == EPERM)) return text.data();
+    if (std::chrono::steady_clock::now() >= end) return {};
+  }
+}
 
 }  // namespace
 
@@ -34,14 +52,12 @@ Result<InstanceLock> InstanceLock::take(const std::string& directory, const std:
                   "name a state_directory that this user may write to");
   InstanceLock lock(descriptor);
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
-    std::array<char, 32> owner{};
-    const bool known = ::read(descriptor, owner.data(), owner.size() - 1) > 0;
-    return refuse(kAnother + service + " works in this directory" +
-                      (known ? ", process " + std::string(owner.data()) : std::string()),
+    const std::string process = owner_of(descriptor);
+    return refuse(kAnother + service + " works in this directory" + (process.empty() ? "" : ", process " + process),
                   "stop it, or give this one a state directory of its own");
   }
-  const std::string process = std::to_string(::getpid());
-  if (::ftruncate(descriptor, 0) == 0) (void)!::pwrite(descriptor, process.data(), process.size(), 0);
+  const std::string own = std::to_string(::getpid());
+  if (::ftruncate(descriptor, 0) == 0) (void)!::pwrite(descriptor, own.data(), own.size(), 0);
   return lock;
 }
 

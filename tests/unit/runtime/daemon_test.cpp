@@ -1,10 +1,12 @@
 // A daemon from its command line to SIGTERM, in this process and with the bus in memory.
 #include "services/common/runtime/daemon.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/mount.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -179,6 +181,26 @@ TEST_F(DaemonTest, RefusesToRunTwiceOnOneState) {
   EXPECT_EQ(run(usual()), 2);
   EXPECT_THAT(::testing::internal::GetCapturedStderr(),
               HasSubstr("another data_acquisition works in this directory, process " + std::to_string(::getpid())));
+}
+
+/// It was asked between the owner's lock and the owner's number, and named nobody, or one that had ended.
+TEST_F(DaemonTest, NamesTheOwnerThatHasTheLockButHasNotWrittenItsNumberYet) {
+  const std::string state = place_.directory() + "/state", file = state + "/data_acquisition.lock";
+  std::filesystem::create_directories(state);
+  for (const char* left_behind : {"", "999999999"}) {
+    std::ofstream(file) << left_behind;
+    const int owner = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
+    ASSERT_EQ(::flock(owner, LOCK_EX), 0);
+    const std::future<void> writes = std::async(std::launch::async, [&file] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+      std::ofstream(file) << ::getpid();
+    });
+    const auto refused = InstanceLock::take(state, "data_acquisition");
+    writes.wait();
+    ::close(owner);
+    ASSERT_FALSE(refused.has_value());
+    EXPECT_THAT(refused.error().rule, ::testing::EndsWith("in this directory, process " + std::to_string(::getpid())));
+  }
 }
 
 /// Of a child process that runs with a full disk as its state directory; nothing where this user may not mount one.

@@ -9,8 +9,14 @@
 
 namespace sealwatch {
 
-/// Of those, the ones that the plant describes as measured: where what drives the whole plant is not recorded, a part of
-/// it is simulated, driven by what was measured at its border (the flow into a cylinder). Empty: the whole plant is.
-[[nodiscard]] std::vector<std::string> measured_inputs(const AssetConfig& asset, const TimeSeries& recorded);
+/// Where what drives the whole plant is not recorded, a part of it is simulated, driven by what was measured at its border
+/// (the flow into a cylinder).
+struct PlantPart {
+  std::vector<std::string> inputs;  ///< empty: the whole plant
+  double window_s = 0.0;            ///< as PlantDescription::window_s
+  std::string not_recorded = {};    ///< that drives it too: no law is asked for what it may have done. Empty: nothing
+  std::string record = {};          ///< what would show that
+};
+[[nodiscard]] PlantPart simulated_part(const AssetConfig& asset, const TimeSeries& recorded);
 
 }  // namespace sealwatch

@@ -1,12 +1,11 @@
-// The cylinder circuit of plant `eha` alone, driven by the recorded flow into chamber A, for recordings without the
-// motor's voltage (the source document's own set: flow, differential pressure, position, velocity).
+// The cylinder circuit of plant `eha` alone, driven by the recorded flow into chamber A and pressure of chamber B, for
+// recordings without the motor's voltage.
 //
 //   chamber_a  (V_A/beta) dp_A/dt = q - A_A v - (p_A - p_B) / R_CL,  V_A = V_0 + A_A x
 //   piston     m_C dv/dt = A_A p_A - A_B p_B - f_C v - phi (1 + Phi) - F_cushion,  dx/dt = v
 //
 // p_A: pressure of chamber A [Pa]; v, x: speed and position of the piston [m/s], [m]; q: recorded flow [m3/s]; p_B:
-// recorded pressure of chamber B, or the reservoir's pressure p_0 where it is not recorded [Pa]. Symbols otherwise as in
-// model/eha.hpp. The flow sensor's own lag is not undone: corners of a test come that much later.
+// recorded pressure of chamber B [Pa]. Symbols otherwise as in model/eha.hpp. Without p_B: model/eha_flow_driven.hpp.
 #pragma once
 
 #include "sealwatch/model/eha.hpp"

@@ -7,7 +7,7 @@
 //   auto outputs = (*simulation)->run(values, free);                     // values and d values / d free
 //
 // The simulation is driven by the recorded input alone (linear between samples, or held): `eha` by the motor's voltage,
-// or, where that is not recorded, its cylinder circuit by the flow into chamber A. Sensors' low-pass filters are
+// or, where that is not recorded, its hydraulic part by the flow into chamber A. Sensors' low-pass filters are
 // applied to the sampled outputs and to their sensitivities. Initial state: what is free, and the plant's slow states
 // (`eha`: p_A, p_B, x), starts from ModelValues::initial_state; all other states start from the quasi-steady state that
 // goes with them (their time derivatives are zero), which is differentiated too.

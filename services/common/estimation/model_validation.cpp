@@ -35,7 +35,7 @@ std::vector<double> driving_input(const AssetConfig& asset, const TimeSeries& re
   if (const auto plant = find_plant(asset.model))
     for (const ChannelDescription& channel : (*plant)->channels)
       if (const Series* series = channel.input ? recorded.find(channel.name) : nullptr) return series->values;
-  const std::vector<std::string> measured = measured_inputs(asset, recorded);
+  const std::vector<std::string> measured = simulated_part(asset, recorded).inputs;
   return measured.empty() ? std::vector<double>{} : recorded.find(measured.front())->values;
 }
 

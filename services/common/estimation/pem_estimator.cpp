@@ -34,7 +34,7 @@ class PemEstimator final : public Estimator {
     if (has_cylinder_circuit(asset)) fits.push_back(fit_cylinder_circuit(asset, samples, phases, cylinder_));
     // Driven by a measured flow the whole-record simulation takes the flow's own noise for the model's error: the
     // circuit's filter knows better.
-    if (fits.size() == 2 && !measured_inputs(asset, samples).empty()) std::swap(fits[0], fits[1]);
+    if (fits.size() == 2 && !simulated_part(asset, samples).inputs.empty()) std::swap(fits[0], fits[1]);
     std::stable_partition(fits.begin(), fits.end(), [](const FitReport& fit) { return fit.admissible; });
     return fits;
   }

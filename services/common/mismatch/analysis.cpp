@@ -33,6 +33,7 @@ Result<Explanation> Analysis::analyse() {
   take_up(std::move(*baseline));
   if (const Status status = look_for_what_is_missing(); !status) return cannot_look(status.error());
   if (at_rest(*baseline_, prepared(fit_))) why_none_ = nothing_moves();
+  if (const auto part = driven_unseen(); part && !why_none_) why_none_ = drives_unseen(*part);
   if (!why_none_ && time_.in_time("whether something changed between the tests")) look_for_a_change();
   if (!why_none_ && own_ && !own_->goes_its_way) say_what_differs();
   if (!why_none_) take_values_found();
@@ -47,7 +48,7 @@ Result<Explanation> Analysis::analyse() {
     if (best_.effects.empty() && !beside_) ask_the_datasheet_alone();
   }
   if (beside_ && best_.effects.empty()) fall_back_on_the_value();
-  if (!lacks_a_pressure() && !why_none_ && time_.not_asked().empty()) look_again();
+  if (!why_none_ && time_.not_asked().empty()) look_again();
   if (const Status status = finish(); !status) return fail(status.error());
   time_.allow(1.0);
   if (time_.in_time("a picture of what is missing"))
@@ -79,13 +80,10 @@ void Analysis::tell(std::string_view step, double share) const {
   if (progress_) progress_(step, share);
 }
 
-bool Analysis::lacks_a_pressure() const {
-  return windowed() && by_measurements(asset_, fit_) && !recorded(ChannelRole::pressure_down) &&
-         excess(*baseline_) > kGross;
-}
-
-bool Analysis::recorded(ChannelRole role) const {
-  return find_series(fit_.samples.front(), plant_or_default(asset_.model), role) != nullptr;
+std::optional<PlantPart> Analysis::driven_unseen() const {
+  PlantPart part = simulated_part(asset_, fit_.samples.front());
+  if (part.not_recorded.empty() || excess(*baseline_) <= kGross) return std::nullopt;
+  return part;
 }
 
 const PlantDescription& Analysis::plant() const { return baseline_->problem.recordings.front().simulation->plant(); }

@@ -119,10 +119,8 @@ class Analysis {
   // by its own colour, corners and episodes count for what they are. Where that fails, what was found before stays.
   void look_again();
   Status weigh_by_colour();
-  // Driven by the flow, the circuit takes chamber B's pressure as the reservoir's where it is not recorded. If that
-  // shows, no law is asked for what an unrecorded pressure did.
-  [[nodiscard]] bool lacks_a_pressure() const;
-  [[nodiscard]] bool recorded(ChannelRole role) const;
+  // The simulated part of the plant, where the model misses much and something that drives it is not recorded.
+  [[nodiscard]] std::optional<PlantPart> driven_unseen() const;
   [[nodiscard]] const PlantDescription& plant() const;
   [[nodiscard]] bool windowed() const { return window_s_ > 0.0; }
   [[nodiscard]] HeldOut held_out() const { return {fit_, holdout_, window_s_, options_, predictions_}; }
@@ -154,7 +152,8 @@ class Analysis {
   // Laws that leave less than half of a channel's course reproduced, far above its noise, bend to something else: a
   // wrong unit, a sign, a channel of another sensor.
   bool takes_back_what_comes_nowhere_near();
-  // Nor where a channel of held-out recordings comes out worse: other loads and speeds do not bear it out.
+  // Nor where a channel of held-out recordings comes out worse, or none can be compared: other loads and speeds do not
+  // bear it out.
   bool takes_back_what_does_not_carry_over();
   /// The model that the laws are beside: with the values that are off, where they were found beside such.
   [[nodiscard]] const FittedModel& without_laws() const { return beside_ ? *naming_.baseline : *baseline_; }
@@ -185,6 +184,7 @@ class Analysis {
   Trial tried_;  ///< what was taken back, as it explains too little
   bool proven_ = false;
   bool all_compared_ = true;                               ///< the models can be simulated on every recording
+  bool none_compared_ = false;                             ///< of the held-out recordings
   bool input_swings_ = false;                              ///< between its samples, through much of the tests
   std::optional<WhyNone> why_none_;                        ///< set: no law is named
   std::shared_ptr<const FittedModel> with_another_value_;  ///< of the asset file, where that explains it

@@ -116,6 +116,7 @@ Status Analysis::compare_recordings() {
   const auto blocks = held_out().gains({{}, baseline_}, best_, &result_.recordings);
   if (!blocks) return fail(blocks.error());
   note_not_compared(*blocks);
+  none_compared_ = blocks->gain.empty();
   result_.fit = pool(result_.recordings, false);
   result_.holdout = pool(result_.recordings, true);
   return {};
@@ -157,10 +158,6 @@ void Analysis::put_in_words() {
     effect.evidence = evidence_of(effect, result_.effects.size(), without_laws().misfit / without_laws().residuals,
                                   best_.model->misfit / best_.model->residuals);
   result_.next_test = next_test_of(result_);
-  if (lacks_a_pressure())
-    result_.next_test =
-        "Record the pressures of both chambers, or the motor's voltage: with the flow and the differential pressure "
-        "alone, the pressure of chamber B cannot be separated from missing physics.";
   result_.summary = summary_of(result_);
   say_what_else_is_known();
   if (const std::string moved = values_at_their_end(*best_.model, asset_); !moved.empty()) {
@@ -214,9 +211,12 @@ bool Analysis::takes_back_what_comes_nowhere_near() {
 }
 
 bool Analysis::takes_back_what_does_not_carry_over() {
-  const ChannelComparison* worse = best_.effects.empty() ? nullptr : made_worse(result_.holdout);
-  if (worse == nullptr) return false;
-  result_.notes.push_back(does_not_carry_over(*worse));
+  if (best_.effects.empty()) return false;
+  const ChannelComparison* worse = made_worse(result_.holdout);
+  if (worse == nullptr && !none_compared_) return false;
+  result_.notes.push_back(worse != nullptr ? does_not_carry_over(*worse)
+                                           : "What was found cannot be compared with anything on the held-out "
+                                             "recordings: it is not claimed.");
   tried_ = best_;
   take_all_laws_back();
   return true;

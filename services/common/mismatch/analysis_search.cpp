@@ -24,7 +24,7 @@ constexpr const char* kSensorsAgain = "what was found beside sensors within thei
 Status Analysis::look_for_what_is_missing() {
   tell("looking for what is missing", 0.15);
   ExplainOptions options = options_;
-  if (lacks_a_pressure()) options.maximum_laws = 0;
+  if (driven_unseen()) options.maximum_laws = 0;
   if (!windowed()) fit_.may_differ = may_differ(asset_, fit_);
   if (!windowed()) fit_.fixed = known_values(asset_, plant());
   const ScreeningOptions screening{.seed = options.seed, .threads = options.threads};

@@ -32,9 +32,9 @@ class BaselineFit {
     static_cast<void>(find_noise(holdout_, channels));  // its standard deviations; its colour is that of the others
     holdout_.colour.assign(holdout_.samples.size(), fit_.colour.front());
     baseline_.window_s = window_of(asset_, fit_.samples.front());
-    if (windowed() && by_measurements(asset_, fit_)) fit_.resolution = holdout_.resolution = kMeasuredInputResolution;
+    if (by_measurements(asset_, fit_)) fit_.resolution = holdout_.resolution = kMeasuredInputResolution;
     Result<FittedModel> model = fit_model(asset_, prepared(fit_), nullptr, options_.threads);
-    if (model && windowed() && by_measurements(asset_, fit_)) {
+    if (model && by_measurements(asset_, fit_)) {
       add_input_noise(holdout_, *model, prepared(fit_), options_.seed);
       add_input_noise(fit_, *model, prepared(fit_), options_.seed);
       model = fit_model(model->asset, prepared(fit_), &*model, options_.threads);
@@ -128,7 +128,7 @@ class BaselineFit {
 }  // namespace
 
 bool by_measurements(const AssetConfig& asset, const Data& fit) {
-  return !measured_inputs(asset, fit.samples.front()).empty();
+  return !simulated_part(asset, fit.samples.front()).inputs.empty();
 }
 
 Result<Baseline> fit_baseline(const AssetConfig& asset, Data& fit, Data& holdout, const ExplainOptions& options,

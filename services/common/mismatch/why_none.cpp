@@ -31,6 +31,12 @@ WhyNone nothing_moves() {
               "and speeds."};
 }
 
+WhyNone drives_unseen(const PlantPart& part) {
+  return {.summary = "Simulation and recordings differ beyond the noise. They do not show " + part.not_recorded +
+                     ", which may be all that is missing: no law was tried.",
+          .next_test = "Record " + part.record + "."};
+}
+
 WhyNone something_changed(const ChangeBetweenTests& change) {
   return {.summary = change.sentence, .next_test = kTestsOfOneTime, .element = change.element};
 }

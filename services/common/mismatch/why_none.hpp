@@ -5,6 +5,7 @@
 #include <string>
 
 #include "sealwatch/mismatch/explanation.hpp"
+#include "sealwatch/model/driving_channels.hpp"
 #include "services/common/mismatch/between_tests.hpp"
 #include "services/common/mismatch/fitted_model.hpp"
 
@@ -20,6 +21,8 @@ struct WhyNone {
 /// The time limit came before the first question.
 [[nodiscard]] WhyNone time_was_up();
 [[nodiscard]] WhyNone nothing_moves();
+/// `part`: driven by something that is not recorded.
+[[nodiscard]] WhyNone drives_unseen(const PlantPart& part);
 [[nodiscard]] WhyNone something_changed(const ChangeBetweenTests& change);
 
 /// `course`: what wears from test to test, in words; `part`: what it is, and which element of the plant ("": none).

@@ -18,7 +18,7 @@ constexpr double kShortest = 0.5;  // of a window: a shorter rest goes to the wi
 // What is measured and drives the simulation has noise.
 TimeSeries with_more_noise(const AssetConfig& asset, TimeSeries samples, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
-  const std::vector<std::string> measured = measured_inputs(asset, samples);
+  const std::vector<std::string> measured = simulated_part(asset, samples).inputs;
   for (Series& channel : samples.channels) {
     if (std::ranges::find(measured, channel.name) == measured.end()) continue;
     const double noise_std = noise_std_of(asset, channel, samples.time_s);
@@ -30,7 +30,7 @@ TimeSeries with_more_noise(const AssetConfig& asset, TimeSeries samples, std::mt
 }  // namespace
 
 double window_of(const AssetConfig& asset, const TimeSeries& recorded) {
-  if (!measured_inputs(asset, recorded).empty()) return kFlowWindow_s;
+  if (const PlantPart part = simulated_part(asset, recorded); !part.inputs.empty()) return part.window_s;
   const auto plant = find_plant(asset.model);
   return plant ? (*plant)->window_s : 0.0;
 }

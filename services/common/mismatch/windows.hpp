@@ -1,7 +1,7 @@
 // Windows: pieces of a recording that are simulated from initial states of their own, with the recording's load shared.
 //
 // Where the simulation integrates a noisy measured input (the cylinder circuit is driven by the recorded flow), its
-// error grows like a random walk; within 2 s it stays below the sensors' noise. What the input's noise still adds is
+// error grows like a random walk; within a window it stays below the sensors' noise. What the input's noise still adds is
 // found by simulating once with as much noise again, and goes into the noise of the outputs:
 //
 //   sigma^2 <- sigma^2 + mean (y(u + e) - y(u))^2,   e: seeded noise of the input channels
@@ -13,13 +13,12 @@
 
 namespace sealwatch::mismatch {
 
-inline constexpr double kFlowWindow_s = 2.0;
 /// Data::resolution of recordings that are driven by a measured flow: its sensor rounds the corners of a test, and
 /// friction of some 20 N fits that. A tenth of what an engineer would care about is not claimed from such an input.
 inline constexpr double kMeasuredInputResolution = 0.1;
 
-/// Length of the windows that the simulation of this recording needs: driven by a measured flow, or a plant that says
-/// so in its table. 0: none.
+/// Length of the windows that the simulation of this recording needs, as the plant, or the part of it that is simulated,
+/// says. 0: none.
 [[nodiscard]] double window_of(const AssetConfig& asset, const TimeSeries& recorded);
 
 [[nodiscard]] Data cut_into_windows(const Data& data, double window_s);

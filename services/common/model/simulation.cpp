@@ -38,6 +38,13 @@ bool has_all(const TimeSeries& recorded, const std::vector<std::string>& channel
   return std::ranges::all_of(channels, [&](const std::string& name) { return recorded.has(name); });
 }
 
+/// The first whose inputs are recorded; nullptr: none.
+const AlternativeSimulator* that_is_driven(const PlantSimulator& simulator, const TimeSeries& recorded) {
+  const auto found = std::ranges::find_if(
+      simulator.alternatives, [&](const AlternativeSimulator& of) { return has_all(recorded, of.part.inputs); });
+  return found == simulator.alternatives.end() ? nullptr : &*found;
+}
+
 /// A part of the plant knows nothing of the rest and of its laws.
 AssetConfig of_part(AssetConfig asset, const PlantDescription& plant, const std::vector<Site>& sites) {
   std::erase_if(asset.physics, [&](const PhysicsTerm& term) {
@@ -51,7 +58,8 @@ Error without_input(const PlantDescription& plant, const PlantSimulator& simulat
   const auto missing = std::ranges::find_if(simulator.inputs, [&](const auto& name) { return !recorded.has(name); });
   std::string advice = "record it";
   for (const AlternativeSimulator& other : simulator.alternatives)
-    advice.append(", or the ").append(plant.find_channel(other.inputs.front())->meaning);
+    if (const auto& inputs = other.part.inputs; inputs.size() == 1)
+      advice.append(", or the ").append(plant.find_channel(inputs.front())->meaning);
   if (!plant.file.empty())
     advice.append(", or take it out of the inputs in ").append(plant.file).append(": an FMU then keeps its own value");
   return {.file = {},
@@ -129,26 +137,19 @@ Result<std::unique_ptr<PlantSimulation>> PlantSimulation::create(const AssetConf
     if (!terms) return fail(terms.error());
     return simulator->simulate(**plant, asset, recorded, std::move(*terms));
   }
-  for (const AlternativeSimulator& part : simulator->alternatives) {
-    if (!has_all(recorded, part.inputs)) continue;
-    Result<PhysicsTerms> terms = resolve_physics(**plant, part.sites, of_part(asset, **plant, part.sites));
+  if (const AlternativeSimulator* of = that_is_driven(*simulator, recorded)) {
+    Result<PhysicsTerms> terms = resolve_physics(**plant, of->sites, of_part(asset, **plant, of->sites));
     if (!terms) return fail(terms.error());
-    return part.simulate(**plant, asset, recorded, std::move(*terms));
+    return of->simulate(**plant, asset, recorded, std::move(*terms));
   }
   return fail(without_input(**plant, *simulator, recorded));
 }
 
-std::vector<std::string> measured_inputs(const AssetConfig& asset, const TimeSeries& recorded) {
+PlantPart simulated_part(const AssetConfig& asset, const TimeSeries& recorded) {
   const auto simulator = std::ranges::find(plant_simulators(), asset.model, &PlantSimulator::model);
   if (simulator == plant_simulators().end() || has_all(recorded, simulator->inputs)) return {};
-  for (const AlternativeSimulator& part : simulator->alternatives)
-    if (has_all(recorded, part.inputs)) {
-      std::vector<std::string> measured = part.inputs;
-      std::ranges::copy_if(part.also, std::back_inserter(measured),
-                           [&](const auto& name) { return recorded.has(name); });
-      return measured;
-    }
-  return {};
+  const AlternativeSimulator* of = that_is_driven(*simulator, recorded);
+  return of ? of->part : PlantPart{};
 }
 
 namespace {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "sealwatch/model/driving_channels.hpp"
 #include "sealwatch/model/simulation.hpp"
 #include "services/common/model/physics_terms.hpp"
 
@@ -14,8 +15,7 @@ using SimulatePlant = std::function<Result<std::unique_ptr<PlantSimulation>>(
 
 /// A part of the plant that other recorded channels can drive; it has no sites but these.
 struct AlternativeSimulator {
-  std::vector<std::string> inputs;
-  std::vector<std::string> also = {};  ///< that drive it too where they are recorded
+  PlantPart part;
   std::vector<Site> sites;
   SimulatePlant simulate = nullptr;
 };
@@ -24,7 +24,7 @@ struct PlantSimulator {
   std::string model;                ///< name of the plant
   std::vector<std::string> inputs;  ///< that must be recorded
   SimulatePlant simulate = nullptr;
-  std::vector<AlternativeSimulator> alternatives = {};  ///< of a part of the plant, where `inputs` are not recorded
+  std::vector<AlternativeSimulator> alternatives = {};  ///< where `inputs` are not recorded: the first
 };
 
 /// A plant that comes with sealwatch: a folder of services/common/model/plants.

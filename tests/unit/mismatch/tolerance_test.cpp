@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <set>
 
 #include "sealwatch/mismatch/explain.hpp"
 #include "services/common/estimation/model_validation.hpp"
@@ -17,6 +19,7 @@ namespace {
 using testing::Contains;
 using testing::Each;
 using testing::Field;
+using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
@@ -158,14 +161,16 @@ TEST(Tolerance, ASensorWhoseZeroMovesDuringTheTestIsAFault) {
   }
 }
 
+void leave_out(TimeSeries& samples, const std::set<std::string>& channels) {
+  std::erase_if(samples.channels, [&](const Series& channel) { return channels.contains(channel.name); });
+}
+
 // A flow that drives the cylinder circuit is measured itself.
 TEST(Tolerance, OfAMeasuredFlowIsNoPhysicsAndNoLeakage) {
   const AssetConfig asset = actuator();
   std::vector<Recording> tests = tests_of(asset);
   for (Recording& test : tests) {
-    std::erase_if(test.samples.channels, [](const Series& channel) {
-      return channel.name == "motor_voltage" || channel.name == "motor_current" || channel.name == "shaft_speed";
-    });
+    leave_out(test.samples, {"motor_voltage", "motor_current", "shaft_speed"});
     for (double& flow : std::ranges::find(test.samples.channels, "flow", &Series::name)->values)
       flow = 1.003 * flow - 2e-8;
   }
@@ -176,6 +181,30 @@ TEST(Tolerance, OfAMeasuredFlowIsNoPhysicsAndNoLeakage) {
   ASSERT_NE(leakage, found->parameters.end());
   const double truth = asset.parameters.at("R_CL").value;
   EXPECT_NEAR(leakage->before, truth, 3.0 * leakage->before_std) << "of " << truth;
+}
+
+// The source document's own channels. What the pump moves before its valve opens is in none of them.
+TEST(Tolerance, OfADifferencePressureAloneTheLeakageIsToldAndNoPhysics) {
+  const AssetConfig asset = actuator();
+  std::vector<Recording> tests = tests_of(asset);
+  for (Recording& test : tests) {
+    Series difference = *test.samples.find("pressure_a");
+    const std::vector<double>& other = test.samples.find("pressure_b")->values;
+    std::ranges::transform(difference.values, other, difference.values.begin(), std::minus<>());
+    difference.name = "pressure_differential";
+    difference.noise_std *= std::sqrt(2.0);
+    test.samples.channels.push_back(std::move(difference));
+    leave_out(test.samples, {"motor_voltage", "motor_current", "shaft_speed", "pressure_a", "pressure_b"});
+  }
+  const auto found = explain(asset, tests, {}, {.time_limit_s = 30.0});
+  ASSERT_TRUE(found) << found.error().describe();
+  EXPECT_THAT(found->effects, IsEmpty()) << found->summary;
+  EXPECT_THAT(found->summary, HasSubstr("what the pump moves before its valve opens"));
+  EXPECT_EQ(found->next_test, "Record the pressures of both chambers, or the motor's voltage.");
+  const auto leakage = std::ranges::find(found->parameters, "R_CL", &ParameterShift::name);
+  ASSERT_NE(leakage, found->parameters.end());
+  const double truth = asset.parameters.at("R_CL").value;
+  EXPECT_NEAR(leakage->before, truth, 0.03 * truth);
 }
 
 }  // namespace

@@ -76,9 +76,10 @@ class QuasiSteadyState {
   [[nodiscard]] bool relax(std::vector<double>& state) const {
     constexpr double kPseudoTime_s = 100.0;  // many times the slowest leakage of a closed volume
     constexpr double kCoarser = 300.0;
+    constexpr int kStableOrder = 2;  // A-stable: what swings and dies away slowly does not shorten the steps at rest
     std::vector<double> scale = scale_;
     for (double& value : scale) value *= kCoarser;
-    Bdf<N> bdf(frozen_, 0, std::move(scale), {.maximum_steps = 5000});
+    Bdf<N> bdf(frozen_, 0, std::move(scale), {.maximum_steps = 5000, .maximum_order = kStableOrder});
     if (!bdf.start(0.0, state.data())) return false;
     while (bdf.time() < kPseudoTime_s)
       if (!bdf.step()) return false;

@@ -47,6 +47,44 @@ TEST(Simulation, StartsAtRestAndFollowsThePst) {
   EXPECT_NEAR(dp * asset.parameter("A_C"), asset.parameter("phi"), 0.01 * asset.parameter("phi"));
 }
 
+/// A winding of little resistance swings with the shaft and dies away slowly. Steps that would follow it ran out.
+TEST(Simulation, StartsAtRestWhereWhatSettlesSwings) {
+  AssetConfig asset = nominal_asset("eha");
+  for (const double resistance_ohm : {0.05, 0.1045, 0.2}) {
+    asset.parameters.at("R_M").value = resistance_ohm;
+    const auto simulation = simulation_of(asset, standard_pst(asset, 200.0, 2.0));
+    const auto outputs = simulation->run(simulation->start(), {});
+    EXPECT_TRUE(outputs) << resistance_ohm << ": " << (outputs ? "" : outputs.error().describe());
+  }
+}
+
+/// With a constant pressure in chamber B, x was 0.1 mm off from where the piston turned back.
+TEST(Simulation, ByTheFlowAloneFollowsThePressureOfTheOtherChamber) {
+  const AssetConfig asset = nominal_asset("eha");
+  const TimeSeries driven = standard_pst(asset);
+  const auto whole = simulation_of(asset, driven);
+  ModelValues values = whole->start();
+  const SimulatedOutputs truth = run(*whole, values);
+  TimeSeries recorded{.time_s = driven.time_s, .channels = {}};
+  for (const char* channel : {"flow", "position", "velocity"}) {
+    const Eigen::VectorXd of = truth.values.col(column(*whole, channel));
+    recorded.channels.push_back(
+        {channel, find_plant("eha").value()->find_channel(channel)->unit, 0.0, {of.begin(), of.end()}});
+  }
+  const Eigen::VectorXd difference =
+      truth.values.col(column(*whole, "pressure_a")) - truth.values.col(column(*whole, "pressure_b"));
+  recorded.channels.push_back({"pressure_differential", "Pa", 0.0, {difference.begin(), difference.end()}});
+
+  const auto part = simulation_of(asset, recorded);
+  ModelValues start = part->start();
+  start.load_factor = values.load_factor;
+  const SimulatedOutputs outputs = run(*part, start);
+  const Eigen::VectorXd position = outputs.values.col(column(*part, "position"));
+  const Eigen::VectorXd off = position - truth.values.col(column(*whole, "position"));
+  EXPECT_LT(off.segment(400, 2000).cwiseAbs().maxCoeff(), 20e-6) << "on the way, from a second after it set out";
+  EXPECT_LT(off.tail(400).cwiseAbs().maxCoeff(), 20e-6);
+}
+
 TEST(Simulation, TakesTheInputAsHeldWhenTheRecordingSaysSo) {
   const AssetConfig asset = nominal_asset("eha");
   TimeSeries linear = standard_pst(asset, 200.0, 3.0), held = linear, shifted = linear;

@@ -28,15 +28,15 @@ class BaselineFit {
     const auto simulation = PlantSimulation::create(asset_, fit_.samples.front());
     if (!simulation) return fail(simulation.error());
     const std::vector<std::string> channels((*simulation)->channels().begin(), (*simulation)->channels().end());
+    const NoiseColour of_inputs = noise_of_inputs();
     baseline_.notes = find_noise(fit_, channels);
     static_cast<void>(find_noise(holdout_, channels));  // its standard deviations; its colour is that of the others
     holdout_.colour.assign(holdout_.samples.size(), fit_.colour.front());
     baseline_.window_s = window_of(asset_, fit_.samples.front());
-    if (by_measurements(asset_, fit_)) fit_.resolution = holdout_.resolution = kMeasuredInputResolution;
     Result<FittedModel> model = fit_model(asset_, prepared(fit_), nullptr, options_.threads);
     if (model && by_measurements(asset_, fit_)) {
-      add_input_noise(holdout_, *model, prepared(fit_), options_.seed);
-      add_input_noise(fit_, *model, prepared(fit_), options_.seed);
+      const InputNoise noise = input_noise(*model, prepared(fit_), of_inputs, options_.seed);
+      for (Data* data : {&holdout_, &fit_}) add_input_noise(*data, asset_, channels, noise);
       model = fit_model(model->asset, prepared(fit_), &*model, options_.threads);
     }
     if (!model && !time_.deadline().cancelled() &&
@@ -65,6 +65,15 @@ class BaselineFit {
   }
 
  private:
+  // Of the measured channels that drive the simulation; what they cannot be told from is not asked.
+  NoiseColour noise_of_inputs() {
+    const std::vector<std::string> inputs = simulated_part(asset_, fit_.samples.front()).inputs;
+    if (inputs.empty()) return {};
+    fit_.resolution = holdout_.resolution = kMeasuredInputResolution;
+    static_cast<void>(find_noise(fit_, inputs));
+    return fit_.colour.front();
+  }
+
   // Far off, the model's error decides, and some of the windows show it as well as all.
   Result<FittedModel> of_fewer_windows(FittedModel model) {
     double rows = 0.0;

@@ -15,15 +15,13 @@ namespace sealwatch::mismatch {
 namespace {
 
 constexpr Eigen::Index kPiece = 64;
-constexpr Eigen::Index kOrder = 3;
+constexpr Eigen::Index kOrder = std::tuple_size_v<Covariances> - 1;
 constexpr Eigen::Index kPolynomials = 8;           // taken off each piece
 constexpr Eigen::Index kTwice = 2 * kPolynomials;  // to see whether that was enough
 constexpr Eigen::Index kStraight = 3;              // of them, those that a steady motion fills as well
 constexpr double kQuietShare = 0.25;
 constexpr double kLeastCorrelation = 0.05;  // below it whitening would change no variance by more than 0.3 %
 constexpr double kSignificant = 3.0;        // standard errors of a correlation
-
-using Covariances = std::array<double, kOrder + 1>;
 
 // Orthonormal polynomials of degree 0..15 over a piece: each made of the last one, so that none is lost to rounding.
 const Eigen::MatrixXd& polynomials() {
@@ -69,9 +67,7 @@ std::vector<Eigen::VectorXd> quiet_pieces_of(const std::vector<double>& values, 
 
 void add_covariances(const std::vector<Eigen::VectorXd>& pieces, Covariances& sum, double& samples) {
   for (const Eigen::VectorXd& piece : pieces) {
-    for (Eigen::Index lag = 0; lag <= kOrder; ++lag)
-      sum[static_cast<std::size_t>(lag)] +=
-          piece.head(kPiece - lag).dot(piece.tail(kPiece - lag)) / static_cast<double>(kPiece - lag);
+    add_products(piece, sum);
     samples += static_cast<double>(kPiece);
   }
 }
@@ -157,7 +153,7 @@ std::optional<Covariances> covariances_of(const Data& data, const std::string& c
       add_covariances(quiet_pieces_of(series->values, detrending), covariance, samples);
   if (!(covariance[0] > 0.0) || samples < 4.0 * kPiece) return std::nullopt;
   covariance = undo_detrending(covariance, detrending);
-  for (double& one : covariance) one *= static_cast<double>(kPiece) / samples;
+  for (double& one : covariance) one /= samples;
   return covariance;
 }
 
@@ -167,7 +163,30 @@ bool shows_motion(const Covariances& covariance, const Covariances& by_twice) {
   return !are_alike(std::sqrt(covariance[0]), std::sqrt(by_twice[0]));
 }
 
+// Correlations rho_1..rho_3 of autoregressive noise: Yule and Walker's equations for them.
+Covariances correlations_of(const ChannelColour& colour) {
+  if (colour.coefficients.empty()) return {1.0};
+  const double a1 = colour.coefficients[0], a2 = colour.coefficients[1], a3 = colour.coefficients[2];
+  const double first = (a1 + a2 * a3) / (1.0 - a2 - a3 * (a1 + a3)), second = a2 + (a1 + a3) * first;
+  return {1.0, first, second, a1 * second + a2 * first + a3};
+}
+
 }  // namespace
+
+void add_products(const Eigen::Ref<const Eigen::VectorXd, 0, Eigen::InnerStride<>>& values, Covariances& sum) {
+  const Eigen::Index count = values.size();
+  for (Eigen::Index lag = 0; lag <= std::min(kOrder, count - 1); ++lag)
+    sum[static_cast<std::size_t>(lag)] += values.head(count - lag).dot(values.tail(count - lag)) *
+                                          static_cast<double>(count) / static_cast<double>(count - lag);
+}
+
+std::pair<ChannelColour, double> sum_of_noise(const ChannelColour& sensor, double sensor_std, const Covariances& more) {
+  Covariances covariance = correlations_of(sensor);
+  for (std::size_t lag = 0; lag < covariance.size(); ++lag)
+    covariance[lag] = sensor_std * sensor_std * covariance[lag] + more[lag];
+  const bool white = std::abs(covariance[1]) < kLeastCorrelation * covariance[0];
+  return {white ? ChannelColour{} : autoregression(covariance), std::sqrt(covariance[0])};
+}
 
 std::vector<std::string> find_noise(Data& data, const std::vector<std::string>& channels) {
   std::vector<std::string> sentences;

@@ -11,9 +11,25 @@
 // Never from a model's residuals. Yule-Walker: G. U. Yule, Phil. Trans. Royal Society A 226 (1927) 267.
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "services/common/mismatch/fitted_model.hpp"
 
 namespace sealwatch::mismatch {
+
+/// Of noise, at lags 0 to 3.
+using Covariances = std::array<double, 4>;
+
+/// Adds the products of samples at each lag, each as many as there are samples.
+void add_products(const Eigen::Ref<const Eigen::VectorXd, 0, Eigen::InnerStride<>>& values, Covariances& sum);
+
+/// Colour and standard deviation of a sensor's noise and `more` of it, independent of each other.
+[[nodiscard]] std::pair<ChannelColour, double> sum_of_noise(const ChannelColour& sensor, double sensor_std,
+                                                            const Covariances& more);
 
 /// Fills data.colour, and noise_std of the channels where slow noise is larger than differences say; sentences on what
 /// was found.

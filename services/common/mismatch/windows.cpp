@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <random>
+#include <tuple>
 #include <utility>
 
 #include "sealwatch/model/driving_channels.hpp"
@@ -15,16 +15,39 @@ namespace {
 
 constexpr double kShortest = 0.5;  // of a window: a shorter rest goes to the window before
 
-// What is measured and drives the simulation has noise.
-TimeSeries with_more_noise(const AssetConfig& asset, TimeSeries samples, std::mt19937_64& random) {
+// As many values of such noise as there are in `values`, added to them.
+void add_noise(const ChannelColour& colour, double noise_std, std::mt19937_64& random, std::vector<double>& values) {
+  constexpr std::size_t kUntilSteady = 200;
   std::normal_distribution<double> normal;
-  const std::vector<std::string> measured = simulated_part(asset, samples).inputs;
-  for (Series& channel : samples.channels) {
-    if (std::ranges::find(measured, channel.name) == measured.end()) continue;
-    const double noise_std = noise_std_of(asset, channel, samples.time_s);
-    for (double& value : channel.values) value += noise_std * normal(random);
+  const std::vector<double>& a = colour.coefficients;
+  std::vector<double> noise(kUntilSteady + values.size());
+  for (std::size_t k = 0; k < noise.size(); ++k) {
+    noise[k] = colour.innovation_std * normal(random);
+    for (std::size_t j = 0; j < std::min(a.size(), k); ++j) noise[k] += a[j] * noise[k - 1 - j];
+  }
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] += noise_std * noise[kUntilSteady + k];
+}
+
+// What is measured and drives the simulation, with as much noise again.
+TimeSeries with_more_noise(const AssetConfig& asset, TimeSeries samples, const NoiseColour& of_inputs,
+                           std::mt19937_64& random) {
+  const std::vector<std::string> inputs = simulated_part(asset, samples).inputs;
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    const auto channel = std::ranges::find(samples.channels, inputs[k], &Series::name);
+    add_noise(of_inputs[k], noise_std_of(asset, *channel, samples.time_s), random, channel->values);
   }
   return samples;
+}
+
+// What the window's own start and load make of the difference is no noise: they are fitted.
+void take_off_own(const PemRecording& window, const SimulatedOutputs& own, RowMatrix& difference) {
+  const Eigen::Index rows = difference.size();
+  const Eigen::VectorXd scale = window.noise_std.cwiseInverse().replicate(difference.rows(), 1);
+  Eigen::MatrixXd columns = scale.asDiagonal() * Eigen::MatrixXd(own.sensitivities.topRows(rows));
+  for (auto column : columns.colwise()) column /= std::max(column.norm(), 1e-300);
+  Eigen::Map<Eigen::VectorXd> all(difference.data(), rows);
+  const Eigen::VectorXd seen = scale.cwiseProduct(all);
+  all -= (columns * columns.colPivHouseholderQr().solve(seen)).cwiseQuotient(scale);
 }
 
 }  // namespace
@@ -62,29 +85,43 @@ Data cut_into_windows(const Data& data, double window_s) {
   return windows;
 }
 
-void add_input_noise(Data& data, const FittedModel& model, const Data& windows, std::uint64_t seed) {
+InputNoise input_noise(const FittedModel& model, const Data& windows, const NoiseColour& of_inputs,
+                       std::uint64_t seed) {
   std::mt19937_64 random(seed);
-  std::map<std::string, std::pair<double, double>> squares;  // per channel: sum and count
+  std::map<std::string, std::pair<Covariances, double>> sums;  // per channel, and how many samples
   for (std::size_t k = 0; k < windows.samples.size(); ++k) {
     const PemRecording& part = model.problem.recordings[k];
-    const auto noisy = PlantSimulation::create(model.asset, with_more_noise(model.asset, windows.samples[k], random));
+    const auto noisy =
+        PlantSimulation::create(model.asset, with_more_noise(model.asset, windows.samples[k], of_inputs, random));
     if (!noisy) continue;
+    std::vector<FreeQuantity> own;
+    for (const Unknown& unknown : part.own) own.push_back(unknown.quantity);
     const ModelValues values = values_at(model.problem, k, model.optimum.point.shared, model.optimum.point.own[k]);
-    const auto outputs = (*noisy)->run(values, {}, model.problem.simulation_options);
+    const auto outputs = (*noisy)->run(values, own, model.problem.simulation_options);
     if (!outputs) continue;
-    const RowMatrix difference = outputs->values - model.optimum.at_optimum[k].simulated;
+    RowMatrix difference = outputs->values - model.optimum.at_optimum[k].simulated;
+    take_off_own(part, *outputs, difference);
     for (Eigen::Index c = 0; c < difference.cols(); ++c) {
-      auto& [sum, count] = squares[part.simulation->channels()[static_cast<std::size_t>(c)]];
-      sum += difference.col(c).squaredNorm();
+      auto& [sum, count] = sums[part.simulation->channels()[static_cast<std::size_t>(c)]];
+      add_products(difference.col(c), sum);
       count += static_cast<double>(difference.rows());
     }
   }
-  for (TimeSeries& samples : data.samples)
-    for (Series& channel : samples.channels) {
-      const auto found = squares.find(channel.name);
-      if (found == squares.end() || !(found->second.second > 0.0)) continue;
-      channel.noise_std = std::sqrt(std::pow(noise_std_of(model.asset, channel, samples.time_s), 2) +
-                                    found->second.first / found->second.second);
+  InputNoise noise;
+  for (auto& [channel, of] : sums)
+    for (std::size_t lag = 0; lag < of.first.size(); ++lag) noise[channel][lag] = of.first[lag] / of.second;
+  return noise;
+}
+
+void add_input_noise(Data& data, const AssetConfig& asset, std::span<const std::string> channels,
+                     const InputNoise& noise) {
+  for (std::size_t k = 0; k < data.samples.size(); ++k)
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      const auto more = noise.find(channels[c]);
+      const auto series = std::ranges::find(data.samples[k].channels, channels[c], &Series::name);
+      if (more == noise.end() || series == data.samples[k].channels.end()) continue;
+      const double sensor_std = noise_std_of(asset, *series, data.samples[k].time_s);
+      std::tie(data.colour[k][c], series->noise_std) = sum_of_noise(data.colour[k][c], sensor_std, more->second);
     }
 }
 

@@ -2,14 +2,21 @@
 //
 // Where the simulation integrates a noisy measured input (the cylinder circuit is driven by the recorded flow), its
 // error grows like a random walk; within a window it stays below the sensors' noise. What the input's noise still adds is
-// found by simulating once with as much noise again, and goes into the noise of the outputs:
+// found by simulating once with as much noise again, of the same colour, and goes into the noise of the outputs:
 //
-//   sigma^2 <- sigma^2 + mean (y(u + e) - y(u))^2,   e: seeded noise of the input channels
+//   C(lag) <- C(lag) + mean d(t) d(t + lag),   d = y(u + e) - y(u),   e: seeded noise of the input channels
+//
+// C: autocovariance of an output's noise, by which residuals are whitened (noise.hpp). From d is taken what the window's
+// own start and load can take of it.
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <span>
+#include <string>
 
 #include "services/common/mismatch/fitted_model.hpp"
+#include "services/common/mismatch/noise.hpp"
 
 namespace sealwatch::mismatch {
 
@@ -23,7 +30,12 @@ inline constexpr double kMeasuredInputResolution = 0.1;
 
 [[nodiscard]] Data cut_into_windows(const Data& data, double window_s);
 
-/// Raises noise_std of `data`'s output channels by what the noise of its inputs makes of them.
-void add_input_noise(Data& data, const FittedModel& model, const Data& windows, std::uint64_t seed);
+/// Of what the noise of its inputs makes of each output channel; `of_inputs`: their colours.
+using InputNoise = std::map<std::string, Covariances>;
+[[nodiscard]] InputNoise input_noise(const FittedModel& model, const Data& windows, const NoiseColour& of_inputs,
+                                     std::uint64_t seed);
+/// Adds it to the noise of `data`'s output `channels`, those of its colours.
+void add_input_noise(Data& data, const AssetConfig& asset, std::span<const std::string> channels,
+                     const InputNoise& noise);
 
 }  // namespace sealwatch::mismatch

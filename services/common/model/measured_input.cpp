@@ -79,8 +79,8 @@ std::vector<double> means_of_neighbours(const std::vector<double>& held) {
 
 namespace {
 
-constexpr double kReach_s = 0.04;
-constexpr double kStandardErrors = 3.0;
+constexpr double kReach_s = 0.16;
+constexpr double kStandardErrors = 2.0;
 
 // Standard deviation of white noise: of third differences, without the tenth of them that is largest (corners).
 double noise_of(const std::vector<double>& values) {
@@ -128,7 +128,7 @@ std::vector<double> undo_sensor(const std::vector<double>& time_s, const std::ve
   std::vector<double> inputs(count);
   for (std::size_t k = 0; k < count; ++k) {
     double least = -std::numeric_limits<double>::infinity(), most = -least;
-    for (std::size_t reach = 2; reach <= longest; ++reach) {
+    for (std::size_t reach = 2; reach <= longest; reach = std::max(reach + 1, reach * 5 / 4)) {
       const Estimate estimate =
           undone(time_s, values, k, k - std::min(k, reach), std::min(count - 1, k + reach), time_constant_s, noise_std);
       least = std::max(least, estimate.value - kStandardErrors * estimate.std_error);

@@ -158,7 +158,7 @@ std::string columns_text(const Understood& log, const std::vector<std::size_t>& 
   return text;
 }
 
-/// "PT-1 [psig] may be it, but '1,234.5' in row 7 is no number": of the first column in a unit of the channel that has
+/// "PT-1 [psig] may be it, but '1,234.5' in row 7 is not a number": of the first column in a unit of the channel that has
 /// cells without numbers.
 std::string unreadable(const Understood& log, const ChannelDescription& channel) {
   for (std::size_t column = 0; column < log.offer.columns.size(); ++column) {
@@ -172,7 +172,7 @@ std::string unreadable(const Understood& log, const ChannelDescription& channel)
     if (word != log.offer.cells[column].end())
       return log.offer.columns[column].text + " may be it, but '" + printable(*word) + "' in row " +
              std::to_string(log.offer.rows[column][static_cast<std::size_t>(word - log.offer.cells[column].begin())]) +
-             " is no number";
+             " is not a number";
   }
   return "";
 }
@@ -211,7 +211,7 @@ std::string doubt(const Understood& log, const ChannelDescription& channel) {
     const std::string& header = log.offer.columns[guess->column].text;
     const std::size_t open = header.rfind('(');
     if (header.ends_with(')') && open != std::string::npos)
-      return header.substr(open) + " is no known unit: taken for " + channel.unit + ", check it";
+      return header.substr(open) + " is not a known unit: taken for " + channel.unit + ", check it";
     return "the log gives no unit: taken for " + channel.unit + ", check it";
   }
   return guess->sure ? "" : "uncertain, check it";
@@ -389,7 +389,7 @@ Result<const PlantDescription*> named_plant(const std::string& model) {
   if (!is_plant_file(model)) return find_plant(model);
   std::error_code ignored;
   if (!fs::is_regular_file(model, ignored))
-    return fail(Error{.file = model, .place = {}, .value = {}, .rule = "is no file", .advice = "--model"});
+    return fail(Error{.file = model, .place = {}, .value = {}, .rule = "is not a file", .advice = "--model"});
   const auto plant = load_plant(model);
   if (!plant) return fail(combine(plant.error()));
   return *plant;

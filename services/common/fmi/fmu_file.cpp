@@ -23,7 +23,7 @@ std::string fault_of_binary(const std::filesystem::path& file) {
   if (!std::string_view(header.data(), 4)
            .starts_with("\x7f"
                         "ELF"))
-    return "is no binary for Linux";
+    return "is not a binary for Linux";
   if (byte(4) != 2) return "is a binary for 32 bits";
   constexpr unsigned kX86_64 = 62;
   const unsigned machine = byte(18) + 256U * byte(19);

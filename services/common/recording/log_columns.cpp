@@ -192,7 +192,7 @@ Result<std::size_t> find_offered(const std::vector<OfferedColumn>& offered, cons
   std::vector<std::string> texts;
   for (const OfferedColumn& column : offered)
     if (!column.text.empty()) texts.push_back(column.text);
-  return fail("is no column of this log", suggest(wanted, texts));
+  return fail("is not a column of this log", suggest(wanted, texts));
 }
 
 Result<MappedColumns> map_columns(const std::vector<OfferedColumn>& offered, const PlantDescription& plant,

@@ -274,7 +274,7 @@ TEST_F(AssetNew, AColumnWhoseCellsAreNoNumbersIsNamed) {
   EXPECT_THAT(told, ::testing::HasSubstr("as no column has the unit: valve_lift [m]"));
   std::ostringstream text;
   text << std::ifstream(path("a.yaml")).rdbuf();
-  EXPECT_THAT(text.str(), ::testing::HasSubstr("Pressure [psig] may be it, but '1,235.5' in row 3 is no number"));
+  EXPECT_THAT(text.str(), ::testing::HasSubstr("Pressure [psig] may be it, but '1,235.5' in row 3 is not a number"));
 }
 
 TEST_F(AssetNew, AColumnWithoutAUnitIsMarked) {
@@ -288,7 +288,7 @@ TEST_F(AssetNew, AUnitThatIsNotKnownIsNotSaidToBeMissing) {
   ASSERT_EQ(make("t [s],motor_voltage [V],position (furlongs/x)\n0,1,2048\n1,1,2049\n2,1,2050\n"), kOk);
   std::ifstream written(path("a.yaml"));
   const std::string text{std::istreambuf_iterator<char>(written), {}};
-  EXPECT_THAT(text, ::testing::HasSubstr("(furlongs/x) is no known unit: taken for m, check it"));
+  EXPECT_THAT(text, ::testing::HasSubstr("(furlongs/x) is not a known unit: taken for m, check it"));
 }
 
 TEST_F(AssetNew, NothingIsWrittenOverAndNothingIsMadeUp) {

@@ -190,7 +190,7 @@ TEST(FmuPlant, FaultsNamePlaceValueAndRule) {
               HasSubstr("cannot be opened: No such file"));
   EXPECT_THAT(fault(folder, with(good, "variable: position", "variable: positin")),
               HasSubstr("did you mean 'position'"));
-  EXPECT_THAT(fault(folder, with(good, "{u: drive_voltage", "{M: drive_voltage")), HasSubstr("is no input of the FMU"));
+  EXPECT_THAT(fault(folder, with(good, "{u: drive_voltage", "{M: drive_voltage")), HasSubstr("not as input"));
   EXPECT_THAT(fault(folder, with(good, "drive_voltage - u_lost", "drive_voltag - u_lost")), HasSubstr("drive_voltag"));
   EXPECT_THAT(fault(folder, with(good, "  x: {unit: m,", "  y: {unit: m,")),
               HasSubstr("is a state of the FMU and is missing"));

@@ -109,7 +109,7 @@ void ask(Understood& log) {
       complain(column.error());
       continue;
     }
-    std::string unit = unit_of(log.offer.columns[*column]);
+    std::string unit = unit_for(log.offer.columns[*column], channel);
     if (unit.empty()) {
       std::printf("  its unit? (Enter: %s) ", channel.unit.c_str());
       std::fflush(stdout);
@@ -184,14 +184,14 @@ std::string may_be_it(const Understood& log, const ChannelDescription& channel) 
   const std::vector<std::size_t> columns = columns_of_unit(log.offer, channel, time, log.guesses);
   if (!columns.empty()) {
     const OfferedColumn& first = log.offer.columns[columns.front()];
-    return "as " + mapping_text({.column = first.text, .unit = unit_of(first)}) +
+    return "as " + mapping_text({.column = first.text, .unit = unit_for(first, channel)}) +
            (columns.size() > 1 ? "; of that unit: " + columns_text(log, columns) : "");
   }
   const std::vector<std::size_t> plain = plain_columns(log.offer, channel, time, log.guesses);
   if (plain.empty()) return "";
   const std::string unit = ", unit: " + text::quoted(channel.unit) + "}";
   const OfferedColumn& first = log.offer.columns[plain.front()];
-  const bool percent = unit_of(first) == "%";
+  const bool percent = unit_for(first, channel) == "%";
   return "as {column: " + text::quoted(first.text) + (percent ? ", scale: 0.01" : ", scale: 1") + unit +
          (percent ? ", with a hundredth of what 100 % is in place of 0.01" : ", with what one count is in place of 1") +
          (plain.size() > 1 ? "; plain numbers: " + columns_text(log, plain) : "");

@@ -1,8 +1,11 @@
 // One run of an FMU's equations (fmu_equations.hpp).
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "services/common/fmi/fmu_equations.hpp"
@@ -56,9 +59,17 @@ class RunningBlock {
   [[nodiscard]] bool is_jump(double step_s) const;
   [[nodiscard]] std::string fault_of_step(double step_s);
   [[nodiscard]] const BlockValues* in_trouble(std::string words) { return trouble_ = std::move(words), nullptr; }
+  /// Whether the derivatives by states that the unit gave at the point asked last are those of its values: looked at
+  /// where they are asked for the first, second, fourth, eighth ... time; false three times in a row: trouble.
+  [[nodiscard]] bool derivatives_hold(double time_s);
+  /// z at the last point asked, with every state a share of its size away; nothing where the unit has no value there.
+  [[nodiscard]] std::optional<std::vector<double>> z_beside(double time_s, double share);
+  /// The first row of z whose derivatives along all states are not those of its values; nothing where none is wrong.
+  [[nodiscard]] std::optional<std::size_t> false_row(double time_s);
   void end_at(double time_s);
   [[nodiscard]] bool is_known(double time_s, const EvaluationRequest& wanted) const;
   void convert(const Evaluation& values, const EvaluationRequest& wanted);
+  [[nodiscard]] std::vector<double> z_of(const Evaluation& values) const;
   void convert_jacobian(std::span<const double> derivatives, std::span<const double> outputs, std::size_t columns,
                         bool of_states);
   [[nodiscard]] bool differentiate_by_parameters(double time_s);
@@ -76,6 +87,7 @@ class RunningBlock {
   double ended_s_ = std::numeric_limits<double>::infinity();  ///< when it asked to end: it has no values after that
   double step_s_ = 0.0;                                       ///< of a Co-Simulation unit with equal steps
   double stepped_to_s_ = std::numeric_limits<double>::quiet_NaN();  ///< by a Co-Simulation unit
+  std::uint64_t times_differentiated_ = 0, times_false_ = 0;        ///< the latter in a row
   BlockValues values_;
   std::string trouble_;
 };

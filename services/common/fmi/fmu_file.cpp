@@ -120,11 +120,17 @@ Status FmuFile::find_binary() {
     return fail(refusal("its member " + binary_ + " " + fault, "export the FMU for Linux on x86-64"));
   }
   std::set<std::string> platforms;
+  std::string others;  // of this platform
   for (const std::string& member : unpacked_.members) {
     if (!member.starts_with("binaries/")) continue;
+    if (member.starts_with("binaries/" + platform + "/") && member.ends_with(".so"))
+      others += (others.empty() ? "" : ", ") + member;
     const std::string rest = member.substr(9);
     if (const auto end = rest.find('/'); end != std::string::npos && end > 0) platforms.insert(rest.substr(0, end));
   }
+  if (!others.empty())
+    return fail(refusal("has no binary " + binary_ + ", after its modelIdentifier, but " + others,
+                        "give the binary the name that modelIdentifier says"));
   std::string there;
   for (const std::string& one : platforms) there += (there.empty() ? "" : ", ") + one;
   const bool has_sources = std::ranges::any_of(

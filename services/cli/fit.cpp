@@ -130,15 +130,15 @@ Json parameter_json(const EstimatedParameter& parameter) {
           {"max", number_or_null(parameter.max)}};
 }
 
-void print_json(const AssetConfig& asset, const FitOptions& options, const FitResult& fit) {
-  Json json = {{"schema", "sealwatch.fit/1"},      {"asset_id", asset.asset_id},  {"model", fit.report.model},
-               {"recordings", options.recordings}, {"parameters", Json::array()}, {"loads", Json::array()},
+void print_json(const AssetConfig& asset, const std::vector<std::string>& recordings, const FitResult& fit) {
+  Json json = {{"schema", "sealwatch.fit/1"}, {"asset_id", asset.asset_id},  {"model", fit.report.model},
+               {"recordings", recordings},    {"parameters", Json::array()}, {"loads", Json::array()},
                {"channels", Json::object()}};
   for (const EstimatedParameter& parameter : fit.report.parameters)
     json["parameters"].push_back(parameter_json(parameter));
   for (std::size_t k = 0; k < fit.loads.size(); ++k) {
     Json load = parameter_json(fit.loads[k]);
-    load["recording"] = options.recordings[k];
+    load["recording"] = recordings[k];
     json["loads"].push_back(load);
   }
   for (const ChannelFit& channel : fit.report.channels)
@@ -170,9 +170,9 @@ void print_parameters(const std::vector<ParameterRow>& rows) {
   }
 }
 
-void print_text(const AssetConfig& asset, const FitOptions& options, const FitResult& fit) {
-  std::printf("%s, model %s, %zu recording%s: %s\n", asset.asset_id.c_str(), fit.report.model.c_str(),
-              options.recordings.size(), options.recordings.size() == 1 ? "" : "s",
+void print_text(const AssetConfig& asset, const std::vector<std::string>& recordings, const FitResult& fit) {
+  std::printf("%s, model %s, %s: %s\n", asset.asset_id.c_str(), fit.report.model.c_str(),
+              count_of(recordings.size(), "recording").c_str(),
               fit.report.admissible ? "admissible" : "NOT admissible");
   for (const std::string& reason : fit.report.reasons) std::printf("  - %s\n", wrapped(reason, 110, 4).c_str());
   if (fit.report.channels.empty()) return;  // no simulation came to its end: there is nothing to show
@@ -180,8 +180,7 @@ void print_text(const AssetConfig& asset, const FitOptions& options, const FitRe
   for (const EstimatedParameter& parameter : fit.report.parameters)
     if (parameter.free) rows.push_back({parameter});
   for (std::size_t k = 0; k < fit.loads.size(); ++k)
-    if (fit.loads.size() > 1)
-      rows.push_back({fit.loads[k], std::filesystem::path(options.recordings[k]).filename().string()});
+    if (fit.loads.size() > 1) rows.push_back({fit.loads[k], std::filesystem::path(recordings[k]).filename().string()});
   if (!fit.report.admissible && !rows.empty())
     std::printf("\n  Where the search ended, for comparison; these values do not describe the actuator:\n");
   print_parameters(rows);
@@ -227,7 +226,8 @@ int run_fit(const FitOptions& options) {
   tell_runaway(*recordings, *asset, **plant);
   const std::optional<FitResult> fit = fit_as_asked(options, *asset, **plant, *recordings);
   if (!fit) return kBadInput;
-  options.json ? print_json(*asset, options, *fit) : print_text(*asset, options, *fit);
+  const std::vector<std::string> names = names_of(*recordings);
+  options.json ? print_json(*asset, names, *fit) : print_text(*asset, names, *fit);
   return fit->report.admissible ? kOk : kAnswerIsNo;
 }
 

@@ -23,4 +23,7 @@ void tell_warnings(const Recording& recording);
                                                                     const AssetConfig& asset,
                                                                     const PlantDescription& plant);
 
+/// Their files; "log.csv#2" for the second test of a file that holds several.
+[[nodiscard]] std::vector<std::string> names_of(const std::vector<Recording>& recordings);
+
 }  // namespace sealwatch::cli

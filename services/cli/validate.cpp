@@ -94,7 +94,7 @@ int run_validate(const ValidateOptions& options) {
   const auto recordings = read_recordings(options.recordings, *asset, **plant);
   if (!recordings) return kBadInput;
   tell_runaway(*recordings, *asset, **plant);
-  const auto validation = validate_model(*asset, *recordings, options.recordings, options.fit);
+  const auto validation = validate_model(*asset, *recordings, names_of(*recordings), options.fit);
   if (!validation) {
     complain(validation.error());
     return kBadInput;

@@ -69,6 +69,27 @@ class OwnPlantCommands : public SixServices {
   }
 };
 
+// Each with a load of its own, so that a test's name stands beside it.
+TEST_F(OwnPlantCommands, TestsOfOneLogAreCountedAndNamed) {
+  write("worn_packing.yaml", std::string(kPlant) + "load: k_F\n");
+  const std::string asset_file = write("asset.yaml", std::string(kAsset) + "log: {time_resets: split}\n");
+  const Finished simulated =
+      run({"sealwatch", "simulate", "--asset", asset_file, "--input", inputs(), "--out", path("tests")});
+  ASSERT_EQ(simulated.status, 0) << simulated.output;
+  std::ifstream one(path("tests/inputs.csv"));
+  std::string header, rows;
+  std::getline(one, header);
+  std::getline(one, rows, '\0');
+  const std::string log = write("log.csv", header + "\n" + rows + rows);
+  const Finished fit = run({"sealwatch", "fit", "--asset", asset_file, log});
+  EXPECT_THAT(fit.output, HasSubstr("2 recordings: "));
+  EXPECT_THAT(fit.output, HasSubstr("log.csv#2"));
+  const Finished as_json = run({"sealwatch", "fit", "--asset", asset_file, log, "--json"});
+  EXPECT_EQ(json::parse(as_json.output)["recordings"], json({log + "#1", log + "#2"})) << as_json.output;
+  const Finished validated = run({"sealwatch", "validate", "--asset", asset_file, log, "--out", path("validated")});
+  EXPECT_THAT(validated.output, HasSubstr("log.csv#2"));
+}
+
 // A slow wave and a little noise that is the same in every run.
 std::string trace(double gain, unsigned seed) {
   std::ostringstream text;

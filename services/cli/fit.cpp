@@ -13,7 +13,6 @@
 #include "sealwatch/model/plant_description.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/recordings.hpp"
-#include "services/cli/runaway.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/common/runtime/in_process_pipeline.hpp"
@@ -66,6 +65,12 @@ FitResult fit_whole(const AssetConfig& asset, const std::vector<Recording>& reco
   for (const RecordingFit& recording : joint.recordings)
     if (!recording.load.name.empty()) result.loads.push_back(recording.load);
   return result;
+}
+
+/// Whether it is admissible, with every channel nearer to its recording than the recording's mean is.
+bool follows(const FitReport& fit) {
+  return fit.admissible &&
+         std::ranges::all_of(fit.channels, [](const ChannelFit& channel) { return channel.nrmse_percent > 0.0; });
 }
 
 /// The cylinder circuit wants the test as the services see it: cut, aligned, with its phases.
@@ -223,9 +228,13 @@ int run_fit(const FitOptions& options) {
   const Result<const PlantDescription*> plant = find_plant(asset->model);
   const auto recordings = read_recordings(options.recordings, *asset, **plant);
   if (!recordings) return kBadInput;
-  tell_runaway(*recordings, *asset, **plant);
-  const std::optional<FitResult> fit = fit_as_asked(options, *asset, **plant, *recordings);
+  const std::optional<Runaway> runaway = tell_runaway(*recordings, *asset);
+  std::optional<FitResult> fit = fit_as_asked(options, *asset, **plant, *recordings);
   if (!fit) return kBadInput;
+  if (runaway && !follows(fit->report)) {
+    fit->report.admissible = false;
+    fit->report.reasons.push_back(in_words(*runaway));
+  }
   const std::vector<std::string> names = names_of(*recordings);
   options.json ? print_json(*asset, names, *fit) : print_text(*asset, names, *fit);
   return fit->report.admissible ? kOk : kAnswerIsNo;

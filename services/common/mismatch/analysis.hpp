@@ -71,8 +71,10 @@ class Analysis {
   static void keep_what_was_replaced(Naming& naming, const Naming& before);
   // With the laws that were found beside inexact sensors, one value of the asset file does what all sensors did.
   [[nodiscard]] bool value_in_place_of_sensors(const Naming& found, const std::vector<KnownValue>& sensors) const;
-  // The model follows the recordings, but nothing can be asked of it: no law, no test, no power.
-  Result<Explanation> cannot_look(const Error& why);
+  // A plant that runs away by itself and was left behind by the machine: laws would bend to where it happens to go.
+  [[nodiscard]] std::optional<Runaway> follows_no_machine() const;
+  // The model was fitted, but nothing can be asked of it: no law, no test, no power.
+  Result<Explanation> tell_no_law(WhyNone why);
   void say_how_likely_by_noise(const Screening& screening);
   // Of other data; what was predicted before is of no use.
   void forget_predictions() { predictions_ = std::make_shared<KeptPredictions>(); }

@@ -31,6 +31,11 @@ WhyNone nothing_moves() {
               "and speeds."};
 }
 
+WhyNone runs_away(const Runaway& runaway) {
+  return {.summary = in_words(runaway) + " No physics is named.",
+          .next_test = advice_for_runaway() + " window_s in the plant file makes explain look at short pieces."};
+}
+
 WhyNone something_changed(const ChangeBetweenTests& change) {
   return {.summary = change.sentence, .next_test = kTestsOfOneTime, .element = change.element};
 }

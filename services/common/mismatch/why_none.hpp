@@ -5,6 +5,7 @@
 #include <string>
 
 #include "sealwatch/mismatch/explanation.hpp"
+#include "services/common/estimation/runaway.hpp"
 #include "services/common/mismatch/between_tests.hpp"
 #include "services/common/mismatch/fitted_model.hpp"
 
@@ -21,6 +22,9 @@ struct WhyNone {
 [[nodiscard]] WhyNone time_was_up();
 [[nodiscard]] WhyNone nothing_moves();
 [[nodiscard]] WhyNone something_changed(const ChangeBetweenTests& change);
+
+/// What follows no machine over a whole test names nothing that is missing in it.
+[[nodiscard]] WhyNone runs_away(const Runaway& runaway);
 
 /// `course`: what wears from test to test, in words; `part`: what it is, and which element of the plant ("": none).
 [[nodiscard]] WhyNone part_changed_but_not_by_wear(const std::string& course, const std::string& part,

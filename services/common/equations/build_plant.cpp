@@ -172,6 +172,10 @@ class Builder {
   }
 
   void check_sizes() {
+    const std::vector<std::string> known = units_of_sizes();
+    for (const auto& [unit, factor] : text_.law_sizes)
+      if (std::ranges::find(known, unit) == known.end())
+        faults_("law_sizes." + unit, fault(unit, "is not a unit of any law", suggest(unit, known)));
     std::string missing, there;
     const std::vector<NeededSize> needed = needed_sizes(text_);
     std::vector<std::string> units;

@@ -184,7 +184,8 @@ class Analysis {
   std::optional<OwnValues> own_;  ///< each test has its own of a parameter, and nothing in common is preferred
   Naming naming_;
   Trial best_;
-  Trial tried_;  ///< what was taken back, as it explains too little
+  std::string too_small_by_size_;  ///< a law that was taken out by law_sizes alone, in words
+  Trial tried_;                    ///< what was taken back, as it explains too little
   bool proven_ = false;
   bool all_compared_ = true;                               ///< the models can be simulated on every recording
   bool input_swings_ = false;                              ///< between its samples, through much of the tests

@@ -126,6 +126,7 @@ TEST(PlantFile, NamesEachFaultWithItsLine) {
        "",
        {"line 21, key law_sizes", "'N s/m'", "is missing",
         "N s/m: about 2e+06 N s/m (viscous friction of its piston)"}},
+      {"N s2/m2: 1e-3}", "N s2/m2: 1e-3, N*m: 2}", {"line 21, key law_sizes.N*m", "is not a unit of any law"}},
       {"u - k*x - c*v", "u - k*x) - c*v", {"line 12", "closes no bracket"}},
       {"start: position", "start: velocity", {"line 14, key states.x.start", "neither a parameter nor a channel"}},
       {", start: 0, size", ", size", {"key states.v", "has no start"}},

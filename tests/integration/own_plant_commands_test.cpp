@@ -154,6 +154,63 @@ TEST_F(OwnPlantCommands, ALifeOfAPlantAsTextAgesWhatTheAssetSaysWears) {
   EXPECT_NEAR(friction["value"].get<double>(), value, 4.0 * friction["std_error"].get<double>());
 }
 
+std::string text_of(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+json last_line(const std::filesystem::path& file) {
+  std::string text = text_of(file);
+  if (text.empty()) return {};
+  text.pop_back();
+  return json::parse(text.substr(text.rfind('\n') + 1));
+}
+
+// What the asset's file says of wear is a condition and a remaining life in the services' own processes, too.
+TEST_F(OwnPlantCommands, TheSixServicesTellTheLifeOfAWornPacking) {
+  constexpr int kMonths = 30;
+  std::filesystem::create_directories(folder_ / "config/assets");
+  std::filesystem::copy(config() + "/sealwatch.yaml", folder_ / "config/sealwatch.yaml");
+  std::filesystem::create_directories(folder_ / "config/plants");
+  write("config/plants/worn_packing.yaml", kPlant);
+  std::string text = kAsset;
+  const std::string valve = write("config/assets/valve.yaml", text.replace(text.find("worn"), 4, "../plants/worn"));
+  const Finished made = run({"sealwatch", "simulate", "--asset", valve, "--input", inputs(), "--ageing", "--months",
+                             std::to_string(kMonths), "--out", path("life")});
+  ASSERT_EQ(made.status, 0) << made.output;
+  std::vector<std::string> tests;
+  for (const auto& entry : std::filesystem::directory_iterator(path("life")))
+    if (entry.path().extension() == ".csv") tests.push_back(entry.path().string());
+  ASSERT_EQ(tests.size(), static_cast<std::size_t>(kMonths));
+  const auto replayed = [&](std::vector<std::string> command, const char* results) {
+    command.insert(command.end(), {"--config", path("config"), "--quiet", "--results", path(results)});
+    command.insert(command.end(), tests.begin(), tests.end());
+    return run(command);
+  };
+  const Finished live = replayed({"sealwatch", "replay", "--with-services", "--state", path("state")}, "live");
+  ASSERT_EQ(live.status, 0) << live.output;
+  const Finished offline = replayed({"sealwatch", "replay", "--offline"}, "offline");
+  ASSERT_EQ(offline.status, 0) << offline.output;
+  for (const char* topic : {"test_features", "state_report", "health_report", "leakage_estimate", "remaining_life",
+                            "pst_request", "advisory"}) {
+    const std::string file = std::string(topic) + ".jsonl", lines = text_of(folder_ / "live" / file);
+    EXPECT_GE(std::count(lines.begin(), lines.end(), '\n'), kMonths) << topic;
+    EXPECT_TRUE(lines == text_of(folder_ / "offline" / file)) << topic;
+  }
+  const json truth = last_line(folder_ / "life/truth.jsonl");
+  const json estimate = last_line(folder_ / "live/leakage_estimate.jsonl");
+  EXPECT_EQ(estimate["parameter"], "F_v");
+  EXPECT_EQ(estimate["unit"], "N s/m");
+  EXPECT_NEAR(estimate["condition"].get<double>(), truth["theta"].get<double>(), 1e-3);
+  const json forecast = last_line(folder_ / "live/remaining_life.jsonl")["forecasts"].front();
+  EXPECT_EQ(forecast["state"], "ok") << forecast;
+  EXPECT_GT(forecast["rul_months"].get<double>(), 12.0) << "27 % went in 30 months, 13 % are left";
+  EXPECT_LT(forecast["rul_months"].get<double>(), 120.0);
+  const json advisory = last_line(folder_ / "live/advisory.jsonl");
+  EXPECT_THAT(advisory["recommendation"].get<std::string>(), HasSubstr("Condition of the stem packing"));
+}
+
 TEST_F(OwnPlantCommands, ALifeNeedsToKnowWhatWearsAndOneTest) {
   const std::string bare = asset("asset_id: V-9\nmodel: worn_packing.yaml\n");
   const Finished unknown =

@@ -80,7 +80,7 @@ std::vector<std::string> units_of_sizes() {
     units.emplace(rule.unit);
     for (const Factor& factor : rule.factors) units.emplace(factor.unit);
   }
-  for (const char* none : {"", "1", "channel"}) units.erase(none);
+  for (const char* none : {"", "channel"}) units.erase(none);
   return {units.begin(), units.end()};
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iomanip>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -14,6 +15,7 @@ namespace sealwatch::testing {
 namespace {
 
 using nlohmann::json;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -88,6 +90,39 @@ TEST_F(OwnPlantCommands, TestsOfOneLogAreCountedAndNamed) {
   EXPECT_EQ(json::parse(as_json.output)["recordings"], json({log + "#1", log + "#2"})) << as_json.output;
   const Finished validated = run({"sealwatch", "validate", "--asset", asset_file, log, "--out", path("validated")});
   EXPECT_THAT(validated.output, HasSubstr("log.csv#2"));
+}
+
+// A pendulum that a controller holds upright, with the controller's torque alone: fitted states at its start follow it for
+// a while, and say nothing.
+TEST_F(OwnPlantCommands, AFitOfAPlantThatRunsAwayIsNotAdmissible) {
+  write("pendulum.yaml", R"yaml(name: held_pendulum
+meaning: a pendulum that stands on a fixed pivot
+inputs: {u: {unit: N m, meaning: torque}}
+outputs: {angle: {value: phi, unit: rad, noise_std: 1.0e-4, meaning: from upright}}
+parameters:
+  g: {value: 20, unit: 1/s2, meaning: gravity over length}
+  d: {value: 0.1, unit: 1/s, meaning: friction of the bearing, estimate: true}
+  J: {value: 0.1, unit: kg m2, meaning: inertia}
+states:
+  phi: {der: w, unit: rad, start: angle}
+  w: {der: g*sin(phi) - d*w + u/J, unit: rad/s, start: 0, size: 1.0}
+elements: {}
+law_sizes: {}
+)yaml");
+  std::ostringstream log;
+  log << "time,u,angle\n" << std::setprecision(12);
+  constexpr double kStep = 1.0e-4, kInertia = 0.1;
+  double phi = 0.0, w = 0.0;
+  for (int k = 0; k <= 80000; ++k) {
+    const double u = kInertia * (60.0 * (0.1 * std::sin(1.5 * kStep * k) - phi) - 10.0 * w);
+    if (k % 100 == 0) log << kStep * k << "," << u << "," << phi + 1.0e-4 * std::sin(0.37 * k * k) << "\n";
+    w += kStep * (20.0 * std::sin(phi) - 0.2 * w + u / kInertia);
+    phi += kStep * w;
+  }
+  const std::string asset_file = write("pendulum-1.yaml", "asset_id: P-1\nmodel: pendulum.yaml\n");
+  const Finished fit = run({"sealwatch", "fit", "--asset", asset_file, write("log.csv", log.str())});
+  EXPECT_EQ(fit.status, 1) << fit.output;
+  EXPECT_THAT(fit.output, AllOf(HasSubstr("NOT admissible"), HasSubstr("- The simulated plant runs away by itself")));
 }
 
 // A slow wave and a little noise that is the same in every run.

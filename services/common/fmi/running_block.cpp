@@ -120,7 +120,7 @@ const BlockValues* RunningBlock::at(double time_s, std::span<const double> state
   known_time_s_ = std::numeric_limits<double>::quiet_NaN();
   if (!values) return trouble_ = values.error().describe(), nullptr;
   convert(*values, asked);
-  if (wanted.by_state != 0 && !derivatives_hold(time_s)) return nullptr;
+  if (!derivatives_hold(time_s, asked)) return nullptr;
   if (wanted.by_parameter != 0 && !in_one && !differentiate_by_parameters(time_s)) return nullptr;
   known_time_s_ = time_s, known_states_ = states_, known_inputs_ = inputs_, known_ = wanted;
   return &values_;

@@ -31,7 +31,8 @@ Result<Explanation> Analysis::analyse() {
   Result<Baseline> baseline = fit_baseline(asset_, fit_, holdout_, options_, time_);
   if (!baseline) return fail(baseline.error());
   take_up(std::move(*baseline));
-  if (const auto runaway = follows_no_machine()) return tell_no_law(runs_away(*runaway));
+  if (const auto runaway = follows_no_machine())
+    return tell_no_law(runs_away(in_words(*runaway), advice_for_runaway()));
   if (const Status status = look_for_what_is_missing(); !status)
     return tell_no_law(time_.in_time("what is missing") ? cannot_be_asked(status.error()) : time_was_up());
   if (at_rest(*baseline_, prepared(fit_))) why_none_ = nothing_moves();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sealwatch/mismatch/explain.hpp"
+#include "services/common/estimation/runaway.hpp"
 #include "services/common/mismatch/baseline.hpp"
 #include "services/common/mismatch/datasheet.hpp"
 #include "services/common/mismatch/held_out.hpp"

@@ -31,11 +31,6 @@ WhyNone nothing_moves() {
               "and speeds."};
 }
 
-WhyNone runs_away(const Runaway& runaway) {
-  return {.summary = in_words(runaway) + " No physics is named.",
-          .next_test = advice_for_runaway() + " window_s in the plant file makes explain look at short pieces."};
-}
-
 WhyNone something_changed(const ChangeBetweenTests& change) {
   return {.summary = change.sentence, .next_test = kTestsOfOneTime, .element = change.element};
 }
@@ -57,6 +52,11 @@ WhyNone part_aged_and_no_more(const std::string& course, const std::string& part
 WhyNone differed_and_no_more(const std::string& course) {
   return {.summary = course + " The asset changed between these tests; nothing else shows.",
           .next_test = kTestsOfOneTime};
+}
+
+WhyNone runs_away(const std::string& runaway, const std::string& advice) {
+  return {.summary = runaway + " No physics is named.",
+          .next_test = advice + " window_s in the plant file makes explain look at short pieces."};
 }
 
 std::string missed_by_trend(const ChannelComparison& worst) {

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "sealwatch/mismatch/explanation.hpp"
-#include "services/common/estimation/runaway.hpp"
 #include "services/common/mismatch/between_tests.hpp"
 #include "services/common/mismatch/fitted_model.hpp"
 
@@ -22,9 +21,6 @@ struct WhyNone {
 [[nodiscard]] WhyNone time_was_up();
 [[nodiscard]] WhyNone nothing_moves();
 [[nodiscard]] WhyNone something_changed(const ChangeBetweenTests& change);
-
-/// What follows no machine over a whole test names nothing that is missing in it.
-[[nodiscard]] WhyNone runs_away(const Runaway& runaway);
 
 /// `course`: what wears from test to test, in words; `part`: what it is, and which element of the plant ("": none).
 [[nodiscard]] WhyNone part_changed_but_not_by_wear(const std::string& course, const std::string& part,
@@ -51,5 +47,8 @@ struct WhyNone {
 
 /// The fitted recordings agree with the model; `worst`: of the held-out ones.
 [[nodiscard]] WhyNone those_kept_aside_differ(const ChannelComparison& worst);
+
+/// What follows no machine over a whole test names nothing that is missing in it. `runaway`: in words; `advice`: on it.
+[[nodiscard]] WhyNone runs_away(const std::string& runaway, const std::string& advice);
 
 }  // namespace sealwatch::mismatch

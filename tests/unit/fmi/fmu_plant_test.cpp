@@ -276,21 +276,26 @@ TEST(FmuPlant, OneThatLiesByItsInputsOrOfItsOutputsIsRefused) {
   }
 }
 
-// Sound at its start at 0.01 m, and all the way to 0.012.
+// Sound at its start at 0.01 m, and all the way to 0.012. By inputs they are asked for only where a law is at one.
 TEST(FmuPlant, OneThatLiesWhereARunGoesIsRefusedThere) {
-  const TestFolder folder;
-  TestUnit unit = spring_return("fmu_spring_lies_beyond2");
-  unit.directional = true;
-  const std::string fmu = folder.build(unit);
-  const auto plant = load_plant(written(folder, plant_text("lying_beyond")));
-  ASSERT_TRUE(plant) << plant.error().front().describe();
-  const auto simulation = PlantSimulation::create(nominal_asset("lying_beyond"), strokes()).value();
-  const std::vector<FreeQuantity> free = {*simulation->find("F_v")};
-  const auto outputs = simulation->run(simulation->start(), free, kTight);
-  ASSERT_FALSE(outputs);
-  EXPECT_THAT(outputs.error().describe(),
-              AllOf(HasSubstr("model.fmu"), HasSubstr("those of der(v) at 0."),
-                    HasSubstr("gives directional derivatives that are not the derivatives of its own values")));
+  for (const char* binary : {"fmu_spring_lies_beyond2", "fmu_spring_lies_beyond_by_input2"}) {
+    const TestFolder folder;
+    TestUnit unit = spring_return(binary);
+    unit.directional = true;
+    const std::string fmu = folder.build(unit);
+    const auto plant = load_plant(written(folder, plant_text(binary)));
+    ASSERT_TRUE(plant) << plant.error().front().describe();
+    AssetConfig asset = nominal_asset(binary);
+    asset.physics = {law_at("driver", "driver_dead_time", binary)};
+    for (auto& one : asset.physics.front().parameters) one.second.value *= 0.01;
+    const auto simulation = PlantSimulation::create(asset, strokes()).value();
+    const std::vector<FreeQuantity> free = {*simulation->find(simulation->physics_parameters().front().name)};
+    const auto outputs = simulation->run(simulation->start(), free, kTight);
+    ASSERT_FALSE(outputs) << binary;
+    EXPECT_THAT(outputs.error().describe(),
+                AllOf(HasSubstr("model.fmu"), HasSubstr("those of der(v) at 0."),
+                      HasSubstr("gives directional derivatives that are not the derivatives of its own values")));
+  }
 }
 
 /// Differences across a corner where the input starts are the mean of both sides.

@@ -1,4 +1,4 @@
-/* With directional derivatives, which LIE makes wrong: it forgets the friction. LIE_BY_INPUT, LIE_OF_OUTPUT, LIE_OF_OUTPUT_BY_INPUT: wrong there. LIE_BEYOND: wrong where x is above 0.012. OF_STATES_ALONE: none of outputs.
+/* With directional derivatives, which LIE makes wrong: it forgets the friction. LIE_BY_INPUT, LIE_OF_OUTPUT, LIE_OF_OUTPUT_BY_INPUT: wrong there. LIE_BEYOND: by this variable wrong where x is above 0.012. OF_STATES_ALONE: none of outputs.
  * ONE_SIDED: its drive gives nothing backwards, which its derivatives say.
  * STEADY: its initial equation is that it rests, wherever its input holds it.
  * STUBBORN: hangs at other
@@ -125,7 +125,7 @@ API int fmi2GetDirectionalDerivative(void* c, const unsigned* unknowns, size_t n
     sensitivity[row] = 0.0;
     for (column = 0; column < nk; ++column) {
 #ifdef LIE_BEYOND
-      if (unknowns[row] == 2001U && knowns[column] == 1001U && ((Model*)c)->x[0] > 0.012) continue;
+      if (unknowns[row] == 2001U && knowns[column] == LIE_BEYOND && ((Model*)c)->x[0] > 0.012) continue;
 #endif
 #ifdef ONE_SIDED
       if (unknowns[row] != 5000U && unknowns[row] != 2000U && knowns[column] != 1000U && knowns[column] != 1001U &&

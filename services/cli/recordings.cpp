@@ -66,7 +66,7 @@ std::vector<std::string> names_of(const std::vector<Recording>& recordings) {
 
 std::optional<Runaway> tell_runaway(const std::vector<Recording>& recordings, const AssetConfig& asset) {
   if (recordings.empty()) return std::nullopt;
-  const std::optional<Runaway> found = find_runaway(asset, recordings.front().samples);
+  std::optional<Runaway> found = find_runaway(asset, recordings.front().samples);
   if (found)
     std::fprintf(stderr, "sealwatch: warning: %s: %s %s\n", recordings.front().file.c_str(), in_words(*found).c_str(),
                  advice_for_runaway().c_str());

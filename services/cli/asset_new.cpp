@@ -109,7 +109,7 @@ void ask(Understood& log) {
       complain(column.error());
       continue;
     }
-    std::string unit = unit_of(log.offer.columns[*column]);
+    std::string unit = unit_for(log.offer.columns[*column], channel);
     if (unit.empty()) {
       std::printf("  its unit? (Enter: %s) ", channel.unit.c_str());
       std::fflush(stdout);
@@ -158,7 +158,7 @@ std::string columns_text(const Understood& log, const std::vector<std::size_t>& 
   return text;
 }
 
-/// "PT-1 [psig] may be it, but '1,234.5' in row 7 is no number": of the first column in a unit of the channel that has
+/// "PT-1 [psig] may be it, but '1,234.5' in row 7 is not a number": of the first column in a unit of the channel that has
 /// cells without numbers.
 std::string unreadable(const Understood& log, const ChannelDescription& channel) {
   for (std::size_t column = 0; column < log.offer.columns.size(); ++column) {
@@ -172,7 +172,7 @@ std::string unreadable(const Understood& log, const ChannelDescription& channel)
     if (word != log.offer.cells[column].end())
       return log.offer.columns[column].text + " may be it, but '" + printable(*word) + "' in row " +
              std::to_string(log.offer.rows[column][static_cast<std::size_t>(word - log.offer.cells[column].begin())]) +
-             " is no number";
+             " is not a number";
   }
   return "";
 }
@@ -184,14 +184,14 @@ std::string may_be_it(const Understood& log, const ChannelDescription& channel) 
   const std::vector<std::size_t> columns = columns_of_unit(log.offer, channel, time, log.guesses);
   if (!columns.empty()) {
     const OfferedColumn& first = log.offer.columns[columns.front()];
-    return "as " + mapping_text({.column = first.text, .unit = unit_of(first)}) +
+    return "as " + mapping_text({.column = first.text, .unit = unit_for(first, channel)}) +
            (columns.size() > 1 ? "; of that unit: " + columns_text(log, columns) : "");
   }
   const std::vector<std::size_t> plain = plain_columns(log.offer, channel, time, log.guesses);
   if (plain.empty()) return "";
   const std::string unit = ", unit: " + text::quoted(channel.unit) + "}";
   const OfferedColumn& first = log.offer.columns[plain.front()];
-  const bool percent = unit_of(first) == "%";
+  const bool percent = unit_for(first, channel) == "%";
   return "as {column: " + text::quoted(first.text) + (percent ? ", scale: 0.01" : ", scale: 1") + unit +
          (percent ? ", with a hundredth of what 100 % is in place of 0.01" : ", with what one count is in place of 1") +
          (plain.size() > 1 ? "; plain numbers: " + columns_text(log, plain) : "");
@@ -211,7 +211,7 @@ std::string doubt(const Understood& log, const ChannelDescription& channel) {
     const std::string& header = log.offer.columns[guess->column].text;
     const std::size_t open = header.rfind('(');
     if (header.ends_with(')') && open != std::string::npos)
-      return header.substr(open) + " is no known unit: taken for " + channel.unit + ", check it";
+      return header.substr(open) + " is not a known unit: taken for " + channel.unit + ", check it";
     return "the log gives no unit: taken for " + channel.unit + ", check it";
   }
   return guess->sure ? "" : "uncertain, check it";
@@ -389,7 +389,7 @@ Result<const PlantDescription*> named_plant(const std::string& model) {
   if (!is_plant_file(model)) return find_plant(model);
   std::error_code ignored;
   if (!fs::is_regular_file(model, ignored))
-    return fail(Error{.file = model, .place = {}, .value = {}, .rule = "is no file", .advice = "--model"});
+    return fail(Error{.file = model, .place = {}, .value = {}, .rule = "is not a file", .advice = "--model"});
   const auto plant = load_plant(model);
   if (!plant) return fail(combine(plant.error()));
   return *plant;

@@ -81,16 +81,6 @@ bool within_range(const Offer& offer, std::size_t column, const ChannelDescripti
   });
 }
 
-/// The unit in which a column may be a channel's: the one that is said; else the header's last word, "Speed_rpm", where
-/// it is a unit of that channel and no letter, which may be a chamber's; "1" where the channel is a plain number and
-/// what is said is no unit: [on/off].
-std::string unit_for(const OfferedColumn& column, const ChannelDescription& channel) {
-  const std::string said = unit_of(column);
-  const bool plain = channel.unit.empty() || channel.unit == "1";
-  if (!said.empty()) return plain && !is_unit(said) ? "1" : said;
-  return unit_at_the_end(column.text, channel.unit);
-}
-
 double score_of_name(const OfferedColumn& column, const ChannelDescription& channel) {
   constexpr double kName = 2.0, kQuantity = 1.0;
   const std::vector<std::string> words = tokens_of(split_header_cell(column.text).name);
@@ -138,6 +128,13 @@ void add_by_unit_alone(const Offer& offer, const PlantDescription& plant, const 
 
 }  // namespace
 
+std::string unit_for(const OfferedColumn& column, const ChannelDescription& channel) {
+  const std::string said = unit_of(column);
+  const bool plain = channel.unit.empty() || channel.unit == "1";
+  if (!said.empty()) return plain && !is_unit(said) ? "1" : said;
+  return unit_at_the_end(column.text, channel.unit);
+}
+
 std::vector<std::size_t> columns_of_unit(const Offer& offer, const ChannelDescription& channel,
                                          const std::string& time_column, const std::vector<ChannelGuess>& guesses) {
   std::vector<std::size_t> columns;
@@ -154,7 +151,7 @@ std::vector<std::size_t> plain_columns(const Offer& offer, const ChannelDescript
                                        const std::string& time_column, const std::vector<ChannelGuess>& guesses) {
   std::vector<std::size_t> columns;
   for (std::size_t column = 0; column < offer.columns.size(); ++column) {
-    const std::string unit = unit_of(offer.columns[column]);
+    const std::string unit = unit_for(offer.columns[column], channel);
     if (offer.columns[column].text == time_column || is_taken(guesses, column) || unit.empty()) continue;
     if (convert_unit(unit, "1") && has_numbers(offer, column)) columns.push_back(column);
   }

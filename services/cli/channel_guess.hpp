@@ -17,6 +17,11 @@ struct ChannelGuess {
   bool sure = true;        ///< false: another channel would fit this column as well, or its unit alone tells
 };
 
+/// The unit in which a column may be a channel's: the one that is said; else the header's last word, "Speed_rpm", where
+/// it is a unit of that channel and no letter, which may be a chamber's; "1" where the channel is a plain number and
+/// what is said is no unit: [on/off].
+[[nodiscard]] std::string unit_for(const OfferedColumn& column, const ChannelDescription& channel);
+
 /// Columns in a unit of the channel that no guess has taken, whatever they are called; without `time_column`.
 [[nodiscard]] std::vector<std::size_t> columns_of_unit(const Offer& offer, const ChannelDescription& channel,
                                                        const std::string& time_column,

@@ -9,7 +9,6 @@
 #include "sealwatch/core/file.hpp"
 #include "sealwatch/model/plant_description.hpp"
 #include "services/cli/recordings.hpp"
-#include "services/cli/runaway.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/common/fmi/export/law_code.hpp"
@@ -230,7 +229,7 @@ int explain_with(const ExplainEngine& engine, const ExplainOptions& options) {
   const auto holdout = read_recordings(options.holdout, *asset, **plant);
   Directory directory(options.directory);
   if (!holdout || !good(all_different(*fit, *holdout)) || !good(directory.make())) return kBadInput;
-  tell_runaway(*fit, *asset, **plant);
+  tell_runaway(*fit, *asset);
 
   const Files files = files_in(options.directory);
   const Result<Explanation> explanation = analyse(engine, options, *asset, *fit, *holdout);

@@ -13,7 +13,6 @@
 #include "sealwatch/model/plant_description.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/recordings.hpp"
-#include "services/cli/runaway.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/common/runtime/in_process_pipeline.hpp"
@@ -66,6 +65,12 @@ FitResult fit_whole(const AssetConfig& asset, const std::vector<Recording>& reco
   for (const RecordingFit& recording : joint.recordings)
     if (!recording.load.name.empty()) result.loads.push_back(recording.load);
   return result;
+}
+
+/// Whether it is admissible, with every channel nearer to its recording than the recording's mean is.
+bool follows(const FitReport& fit) {
+  return fit.admissible &&
+         std::ranges::all_of(fit.channels, [](const ChannelFit& channel) { return channel.nrmse_percent > 0.0; });
 }
 
 /// The cylinder circuit wants the test as the services see it: cut, aligned, with its phases.
@@ -130,15 +135,15 @@ Json parameter_json(const EstimatedParameter& parameter) {
           {"max", number_or_null(parameter.max)}};
 }
 
-void print_json(const AssetConfig& asset, const FitOptions& options, const FitResult& fit) {
-  Json json = {{"schema", "sealwatch.fit/1"},      {"asset_id", asset.asset_id},  {"model", fit.report.model},
-               {"recordings", options.recordings}, {"parameters", Json::array()}, {"loads", Json::array()},
+void print_json(const AssetConfig& asset, const std::vector<std::string>& recordings, const FitResult& fit) {
+  Json json = {{"schema", "sealwatch.fit/1"}, {"asset_id", asset.asset_id},  {"model", fit.report.model},
+               {"recordings", recordings},    {"parameters", Json::array()}, {"loads", Json::array()},
                {"channels", Json::object()}};
   for (const EstimatedParameter& parameter : fit.report.parameters)
     json["parameters"].push_back(parameter_json(parameter));
   for (std::size_t k = 0; k < fit.loads.size(); ++k) {
     Json load = parameter_json(fit.loads[k]);
-    load["recording"] = options.recordings[k];
+    load["recording"] = recordings[k];
     json["loads"].push_back(load);
   }
   for (const ChannelFit& channel : fit.report.channels)
@@ -170,9 +175,9 @@ void print_parameters(const std::vector<ParameterRow>& rows) {
   }
 }
 
-void print_text(const AssetConfig& asset, const FitOptions& options, const FitResult& fit) {
-  std::printf("%s, model %s, %zu recording%s: %s\n", asset.asset_id.c_str(), fit.report.model.c_str(),
-              options.recordings.size(), options.recordings.size() == 1 ? "" : "s",
+void print_text(const AssetConfig& asset, const std::vector<std::string>& recordings, const FitResult& fit) {
+  std::printf("%s, model %s, %s: %s\n", asset.asset_id.c_str(), fit.report.model.c_str(),
+              count_of(recordings.size(), "recording").c_str(),
               fit.report.admissible ? "admissible" : "NOT admissible");
   for (const std::string& reason : fit.report.reasons) std::printf("  - %s\n", wrapped(reason, 110, 4).c_str());
   if (fit.report.channels.empty()) return;  // no simulation came to its end: there is nothing to show
@@ -180,8 +185,7 @@ void print_text(const AssetConfig& asset, const FitOptions& options, const FitRe
   for (const EstimatedParameter& parameter : fit.report.parameters)
     if (parameter.free) rows.push_back({parameter});
   for (std::size_t k = 0; k < fit.loads.size(); ++k)
-    if (fit.loads.size() > 1)
-      rows.push_back({fit.loads[k], std::filesystem::path(options.recordings[k]).filename().string()});
+    if (fit.loads.size() > 1) rows.push_back({fit.loads[k], std::filesystem::path(recordings[k]).filename().string()});
   if (!fit.report.admissible && !rows.empty())
     std::printf("\n  Where the search ended, for comparison; these values do not describe the actuator:\n");
   print_parameters(rows);
@@ -224,10 +228,15 @@ int run_fit(const FitOptions& options) {
   const Result<const PlantDescription*> plant = find_plant(asset->model);
   const auto recordings = read_recordings(options.recordings, *asset, **plant);
   if (!recordings) return kBadInput;
-  tell_runaway(*recordings, *asset, **plant);
-  const std::optional<FitResult> fit = fit_as_asked(options, *asset, **plant, *recordings);
+  const std::optional<Runaway> runaway = tell_runaway(*recordings, *asset);
+  std::optional<FitResult> fit = fit_as_asked(options, *asset, **plant, *recordings);
   if (!fit) return kBadInput;
-  options.json ? print_json(*asset, options, *fit) : print_text(*asset, options, *fit);
+  if (runaway && !follows(fit->report)) {
+    fit->report.admissible = false;
+    fit->report.reasons.push_back(in_words(*runaway));
+  }
+  const std::vector<std::string> names = names_of(*recordings);
+  options.json ? print_json(*asset, names, *fit) : print_text(*asset, names, *fit);
   return fit->report.admissible ? kOk : kAnswerIsNo;
 }
 

@@ -1,6 +1,8 @@
 #include "services/cli/recordings.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <map>
 #include <utility>
 
 #include "services/cli/session.hpp"
@@ -50,6 +52,25 @@ std::optional<std::vector<Recording>> read_recordings(const std::vector<std::str
     }
   }
   return recordings;
+}
+
+std::vector<std::string> names_of(const std::vector<Recording>& recordings) {
+  std::vector<std::string> names;
+  std::map<std::string, int> tests;  // of a file so far
+  for (const Recording& recording : recordings) {
+    const bool alone = std::ranges::count(recordings, recording.file, &Recording::file) == 1;
+    names.push_back(alone ? recording.file : recording.file + "#" + std::to_string(++tests[recording.file]));
+  }
+  return names;
+}
+
+std::optional<Runaway> tell_runaway(const std::vector<Recording>& recordings, const AssetConfig& asset) {
+  if (recordings.empty()) return std::nullopt;
+  std::optional<Runaway> found = find_runaway(asset, recordings.front().samples);
+  if (found)
+    std::fprintf(stderr, "sealwatch: warning: %s: %s %s\n", recordings.front().file.c_str(), in_words(*found).c_str(),
+                 advice_for_runaway().c_str());
+  return found;
 }
 
 }  // namespace sealwatch::cli

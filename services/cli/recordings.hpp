@@ -8,6 +8,7 @@
 #include "sealwatch/config/asset.hpp"
 #include "sealwatch/core/recording.hpp"
 #include "sealwatch/model/plant_description.hpp"
+#include "services/common/estimation/runaway.hpp"
 
 namespace sealwatch::cli {
 
@@ -22,5 +23,11 @@ void tell_warnings(const Recording& recording);
 [[nodiscard]] std::optional<std::vector<Recording>> read_recordings(const std::vector<std::string>& files,
                                                                     const AssetConfig& asset,
                                                                     const PlantDescription& plant);
+
+/// Their files; "log.csv#2" for the second test of a file that holds several.
+[[nodiscard]] std::vector<std::string> names_of(const std::vector<Recording>& recordings);
+
+/// Warns on standard error where the first recording's simulation runs away by itself.
+std::optional<Runaway> tell_runaway(const std::vector<Recording>& recordings, const AssetConfig& asset);
 
 }  // namespace sealwatch::cli

@@ -9,7 +9,6 @@
 #include "sealwatch/model/simulation.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/recordings.hpp"
-#include "services/cli/runaway.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/simulated_life.hpp"
 #include "services/common/model/first_value.hpp"
@@ -158,7 +157,7 @@ int run_simulate_input(const SimulateOptions& options) {
                           .advice = {}}),
            kBadInput;
   }
-  tell_runaway(*inputs, *asset, **plant);
+  tell_runaway(*inputs, *asset);
   std::mt19937_64 noise(options.seed);
   for (const Recording& input : *inputs)
     if (const Status done = simulate_one(input, *asset, **plant, options,

@@ -7,7 +7,6 @@
 #include "sealwatch/core/file.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/recordings.hpp"
-#include "services/cli/runaway.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/cli/validate_page.hpp"
@@ -93,12 +92,13 @@ int run_validate(const ValidateOptions& options) {
   const Result<const PlantDescription*> plant = find_plant(asset->model);
   const auto recordings = read_recordings(options.recordings, *asset, **plant);
   if (!recordings) return kBadInput;
-  tell_runaway(*recordings, *asset, **plant);
-  const auto validation = validate_model(*asset, *recordings, options.recordings, options.fit);
+  const std::optional<Runaway> runaway = tell_runaway(*recordings, *asset);
+  auto validation = validate_model(*asset, *recordings, names_of(*recordings), options.fit);
   if (!validation) {
     complain(validation.error());
     return kBadInput;
   }
+  if (runaway && !validation->reasons.empty()) validation->reasons.push_back(in_words(*runaway));
   const std::string json = to_json(*asset, *validation);
   const std::filesystem::path folder = options.directory;
   for (const auto& [name, text] :

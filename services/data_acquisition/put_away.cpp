@@ -57,7 +57,7 @@ Result<fs::path> put_away(const fs::path& recording, const std::string& folder) 
     return fail(
         error_of(recording, "could not be moved to " + target.string() + ": " + why, "let the service write there"));
   };
-  if (fs::symlink_status(target, error).type() != fs::file_type::directory) return cannot("it is no folder");
+  if (fs::symlink_status(target, error).type() != fs::file_type::directory) return cannot("it is not a folder");
   for (int count = 1; count <= kMostOfOneName; ++count) {
     const fs::path place = target / numbered(recording.filename(), count);
     if (is_there(place) || is_there(sidecar_of(place))) continue;

@@ -81,7 +81,7 @@ std::uint64_t send_lines(Bus& bus, std::chrono::seconds wait) {
     const auto whole = nlohmann::json::parse(line, nullptr, false);
     const auto topic = value_of<Topic>(whole.value("topic", ""));
     const auto message =
-        topic ? message_from_json(*topic, whole["message"].dump()) : Result<Message>(fail("is no topic"));
+        topic ? message_from_json(*topic, whole["message"].dump()) : Result<Message>(fail("is not a topic"));
     if (!message) std::fprintf(stderr, "%s\n", message.error().describe().c_str());
     sent += message && bus.publish(*message) ? 1 : 0;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));

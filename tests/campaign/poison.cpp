@@ -200,7 +200,7 @@ int main(int argc, char** argv) {
     const auto whole = nlohmann::json::parse(line, nullptr, false);
     const auto topic = value_of<Topic>(whole.value("topic", ""));
     const auto message =
-        topic ? message_from_json(*topic, whole["message"].dump()) : Result<Message>(fail("is no topic"));
+        topic ? message_from_json(*topic, whole["message"].dump()) : Result<Message>(fail("is not a topic"));
     if (message)
       poisoner.send(*message);
     else

@@ -187,7 +187,7 @@ def contents():
         for command in (["fit", path("good.csv"), "--asset"], ["plant", "check"], ["config", "check", "--config"]):
             expect([*command, path(name)], [name], " ".join(command[:2]) + " " + name)
     write("wide.csv", ",".join(f"c{k}" for k in range(100_000)) + "\n")
-    expect(["forecast", "--history", path("wide.csv")], ["wide.csv", "is no history"], "a history of many columns")
+    expect(["forecast", "--history", path("wide.csv")], ["wide.csv", "is not a history"], "a history of many columns")
 
 
 def main():

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iomanip>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -14,6 +15,7 @@ namespace sealwatch::testing {
 namespace {
 
 using nlohmann::json;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -68,6 +70,60 @@ class OwnPlantCommands : public SixServices {
     return write("inputs.csv", text.str());
   }
 };
+
+// Each with a load of its own, so that a test's name stands beside it.
+TEST_F(OwnPlantCommands, TestsOfOneLogAreCountedAndNamed) {
+  write("worn_packing.yaml", std::string(kPlant) + "load: k_F\n");
+  const std::string asset_file = write("asset.yaml", std::string(kAsset) + "log: {time_resets: split}\n");
+  const Finished simulated =
+      run({"sealwatch", "simulate", "--asset", asset_file, "--input", inputs(), "--out", path("tests")});
+  ASSERT_EQ(simulated.status, 0) << simulated.output;
+  std::ifstream one(path("tests/inputs.csv"));
+  std::string header, rows;
+  std::getline(one, header);
+  std::getline(one, rows, '\0');
+  const std::string log = write("log.csv", header + "\n" + rows + rows);
+  const Finished fit = run({"sealwatch", "fit", "--asset", asset_file, log});
+  EXPECT_THAT(fit.output, HasSubstr("2 recordings: "));
+  EXPECT_THAT(fit.output, HasSubstr("log.csv#2"));
+  const Finished as_json = run({"sealwatch", "fit", "--asset", asset_file, log, "--json"});
+  EXPECT_EQ(json::parse(as_json.output)["recordings"], json({log + "#1", log + "#2"})) << as_json.output;
+  const Finished validated = run({"sealwatch", "validate", "--asset", asset_file, log, "--out", path("validated")});
+  EXPECT_THAT(validated.output, HasSubstr("log.csv#2"));
+}
+
+// A pendulum that a controller holds upright, with the controller's torque alone: fitted states at its start follow it for
+// a while, and say nothing.
+TEST_F(OwnPlantCommands, AFitOfAPlantThatRunsAwayIsNotAdmissible) {
+  write("pendulum.yaml", R"yaml(name: held_pendulum
+meaning: a pendulum that stands on a fixed pivot
+inputs: {u: {unit: N m, meaning: torque}}
+outputs: {angle: {value: phi, unit: rad, noise_std: 1.0e-4, meaning: from upright}}
+parameters:
+  g: {value: 20, unit: 1/s2, meaning: gravity over length}
+  d: {value: 0.1, unit: 1/s, meaning: friction of the bearing, estimate: true}
+  J: {value: 0.1, unit: kg m2, meaning: inertia}
+states:
+  phi: {der: w, unit: rad, start: angle}
+  w: {der: g*sin(phi) - d*w + u/J, unit: rad/s, start: 0, size: 1.0}
+elements: {}
+law_sizes: {}
+)yaml");
+  std::ostringstream log;
+  log << "time,u,angle\n" << std::setprecision(12);
+  constexpr double kStep = 1.0e-4, kInertia = 0.1;
+  double phi = 0.0, w = 0.0;
+  for (int k = 0; k <= 80000; ++k) {
+    const double u = kInertia * (60.0 * (0.1 * std::sin(1.5 * kStep * k) - phi) - 10.0 * w);
+    if (k % 100 == 0) log << kStep * k << "," << u << "," << phi + 1.0e-4 * std::sin(0.37 * k * k) << "\n";
+    w += kStep * (20.0 * std::sin(phi) - 0.2 * w + u / kInertia);
+    phi += kStep * w;
+  }
+  const std::string asset_file = write("pendulum-1.yaml", "asset_id: P-1\nmodel: pendulum.yaml\n");
+  const Finished fit = run({"sealwatch", "fit", "--asset", asset_file, write("log.csv", log.str())});
+  EXPECT_EQ(fit.status, 1) << fit.output;
+  EXPECT_THAT(fit.output, AllOf(HasSubstr("NOT admissible"), HasSubstr("- The simulated plant runs away by itself")));
+}
 
 // A slow wave and a little noise that is the same in every run.
 std::string trace(double gain, unsigned seed) {
@@ -131,6 +187,63 @@ TEST_F(OwnPlantCommands, ALifeOfAPlantAsTextAgesWhatTheAssetSaysWears) {
   const json friction = json::parse(fit.output)["parameters"].front();
   EXPECT_EQ(friction["name"], "F_v");
   EXPECT_NEAR(friction["value"].get<double>(), value, 4.0 * friction["std_error"].get<double>());
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+json last_line(const std::filesystem::path& file) {
+  std::string text = text_of(file);
+  if (text.empty()) return {};
+  text.pop_back();
+  return json::parse(text.substr(text.rfind('\n') + 1));
+}
+
+// What the asset's file says of wear is a condition and a remaining life in the services' own processes, too.
+TEST_F(OwnPlantCommands, TheSixServicesTellTheLifeOfAWornPacking) {
+  constexpr int kMonths = 30;
+  std::filesystem::create_directories(folder_ / "config/assets");
+  std::filesystem::copy(config() + "/sealwatch.yaml", folder_ / "config/sealwatch.yaml");
+  std::filesystem::create_directories(folder_ / "config/plants");
+  write("config/plants/worn_packing.yaml", kPlant);
+  std::string text = kAsset;
+  const std::string valve = write("config/assets/valve.yaml", text.replace(text.find("worn"), 4, "../plants/worn"));
+  const Finished made = run({"sealwatch", "simulate", "--asset", valve, "--input", inputs(), "--ageing", "--months",
+                             std::to_string(kMonths), "--out", path("life")});
+  ASSERT_EQ(made.status, 0) << made.output;
+  std::vector<std::string> tests;
+  for (const auto& entry : std::filesystem::directory_iterator(path("life")))
+    if (entry.path().extension() == ".csv") tests.push_back(entry.path().string());
+  ASSERT_EQ(tests.size(), static_cast<std::size_t>(kMonths));
+  const auto replayed = [&](std::vector<std::string> command, const char* results) {
+    command.insert(command.end(), {"--config", path("config"), "--quiet", "--results", path(results)});
+    command.insert(command.end(), tests.begin(), tests.end());
+    return run(command);
+  };
+  const Finished live = replayed({"sealwatch", "replay", "--with-services", "--state", path("state")}, "live");
+  ASSERT_EQ(live.status, 0) << live.output;
+  const Finished offline = replayed({"sealwatch", "replay", "--offline"}, "offline");
+  ASSERT_EQ(offline.status, 0) << offline.output;
+  for (const char* topic : {"test_features", "state_report", "health_report", "leakage_estimate", "remaining_life",
+                            "pst_request", "advisory"}) {
+    const std::string file = std::string(topic) + ".jsonl", lines = text_of(folder_ / "live" / file);
+    EXPECT_GE(std::count(lines.begin(), lines.end(), '\n'), kMonths) << topic;
+    EXPECT_TRUE(lines == text_of(folder_ / "offline" / file)) << topic;
+  }
+  const json truth = last_line(folder_ / "life/truth.jsonl");
+  const json estimate = last_line(folder_ / "live/leakage_estimate.jsonl");
+  EXPECT_EQ(estimate["parameter"], "F_v");
+  EXPECT_EQ(estimate["unit"], "N s/m");
+  EXPECT_NEAR(estimate["condition"].get<double>(), truth["theta"].get<double>(), 1e-3);
+  const json forecast = last_line(folder_ / "live/remaining_life.jsonl")["forecasts"].front();
+  EXPECT_EQ(forecast["state"], "ok") << forecast;
+  EXPECT_GT(forecast["rul_months"].get<double>(), 12.0) << "27 % went in 30 months, 13 % are left";
+  EXPECT_LT(forecast["rul_months"].get<double>(), 120.0);
+  const json advisory = last_line(folder_ / "live/advisory.jsonl");
+  EXPECT_THAT(advisory["recommendation"].get<std::string>(), HasSubstr("Condition of the stem packing"));
 }
 
 TEST_F(OwnPlantCommands, ALifeNeedsToKnowWhatWearsAndOneTest) {

@@ -171,7 +171,23 @@ class Builder {
     });
   }
 
+  /// Sizes go by the unit as it is written: one that no law has would be of nothing.
+  void check_units_of_sizes() {
+    const std::vector<std::string> known = units_of_sizes();
+    for (const auto& [unit, factor] : text_.law_sizes) {
+      if (std::ranges::find(known, unit) != known.end()) continue;
+      const Result<Dimension> dimension = find_dimension(unit);
+      const auto same = std::ranges::find_if(known, [&](const std::string& other) {
+        const Result<Dimension> its = find_dimension(other);
+        return dimension && its && *its == *dimension;
+      });
+      faults_("law_sizes." + unit, fault(unit, "is not a unit of any law",
+                                         same == known.end() ? suggest(unit, known) : "laws have it as " + *same));
+    }
+  }
+
   void check_sizes() {
+    check_units_of_sizes();
     std::string missing, there;
     const std::vector<NeededSize> needed = needed_sizes(text_);
     std::vector<std::string> units;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
+
+#include "sealwatch/model/physics.hpp"
 
 namespace sealwatch::equations {
 namespace {
@@ -65,6 +68,20 @@ void add_derived_sizes(std::map<std::string, double>& sizes) {
       if (size > 0.0) sizes.try_emplace(std::string(rule.unit), size);
     }
   }
+}
+
+std::vector<std::string> units_of_sizes() {
+  std::set<std::string> units;
+  for (const Law& law : all_laws()) {
+    for (const LawParameter& parameter : law.parameters) units.emplace(parameter.unit);
+    for (const auto& rounding : law.roundings) units.emplace(rounding.unit);
+  }
+  for (const Rule& rule : kRules) {
+    units.emplace(rule.unit);
+    for (const Factor& factor : rule.factors) units.emplace(factor.unit);
+  }
+  for (const char* none : {"", "channel"}) units.erase(none);
+  return {units.begin(), units.end()};
 }
 
 std::vector<std::string> sizes_to_give(const std::map<std::string, double>& given, std::vector<std::string> needed) {

@@ -15,6 +15,9 @@ namespace sealwatch::equations {
 /// Adds what follows from the sizes that are there and is not given itself.
 void add_derived_sizes(std::map<std::string, double>& sizes);
 
+/// Units that stand in laws, or from which or into which sizes of laws follow: what a size may be given for.
+[[nodiscard]] std::vector<std::string> units_of_sizes();
+
 /// The fewest of the needed units, in their order, whose sizes still have to be given for all to be known.
 [[nodiscard]] std::vector<std::string> sizes_to_give(const std::map<std::string, double>& given,
                                                      std::vector<std::string> needed);

@@ -180,7 +180,7 @@ class Reader {
     if (entry.operation == Operation::constant)
       return Formula{node, raised(base.dimension, entry.number), base.any_unit};
     if (!(base.dimension == kPlain))
-      return wrong(written(syntax), "raises " + words_of(base.dimension) + " to a power that is no fixed number",
+      return wrong(written(syntax), "raises " + words_of(base.dimension) + " to a power that is not a fixed number",
                    "divide the base by a reference of its unit first");
     return Formula{node, kPlain, false};
   }

@@ -158,7 +158,8 @@ void add_states(const DescriptionReader& reader, const pugi::xml_node& at, std::
   const Variable& state = description.variables[*rate.derivative_of];
   if (state.size != rate.size) reader.refuse(at, rate.name, "has another size than its state " + state.name);
   if (state.type != FmiType::float64 || rate.type != FmiType::float64)
-    reader.refuse(at, state.name, "is a state that is no Float64 (Real), which sealwatch integrates alone");
+    reader.refuse(at, state.name,
+                  "is a state that is not a Float64 (Real), the only type of state that sealwatch integrates");
   for (std::size_t element = 0; element < rate.size; ++element) {
     description.states.push_back({*rate.derivative_of, element});
     description.derivatives.push_back({derivative, element});

@@ -37,7 +37,7 @@ class DescriptionReader {
     const pugi::xml_attribute attribute = node.attribute(name);
     if (!attribute) return otherwise;
     if (const auto value = value_of<Enum>(attribute.value())) return *value;
-    refuse(node, attribute.value(), std::string("is no ") + name + " of the standard");
+    refuse(node, attribute.value(), std::string("is not a ") + name + " of the standard");
   }
   [[nodiscard]] const std::string& file() const { return file_; }
 

@@ -176,7 +176,7 @@ Result<UnpackedFmu> unpack_fmu(const std::string& file, const ArchiveLimits& lim
     left -= *size;
   }
   if (!fmu.has(kDescriptionName))
-    return refuse(file, {}, "is no FMU: the archive has no modelDescription.xml at its top");
+    return refuse(file, {}, "is not an FMU: the archive has no modelDescription.xml at its top");
   return fmu;
 }
 

@@ -61,8 +61,6 @@ BlockStart FmuEquations::start_of(const RuntimeLinearisation& at, std::size_t di
 
 namespace {
 
-constexpr const char* kDerivativeRule = "gives directional derivatives that are not the derivatives of its own values";
-
 /// What an evaluation answered, kept beyond the next request.
 struct Partials {
   std::vector<double> derivatives, outputs;
@@ -89,22 +87,6 @@ struct JacobianPart {
 constexpr std::array kParts = {
     JacobianPart{false, false, &Partials::derivatives_by_state}, JacobianPart{true, false, &Partials::outputs_by_state},
     JacobianPart{false, true, &Partials::derivatives_by_input}, JacobianPart{true, true, &Partials::outputs_by_input}};
-
-/// The name of an element of whole variables that stand one behind the other.
-std::string element_of(const ModelDescription& description, std::span<const Handle> handles, std::size_t place) {
-  for (const Handle& handle : handles) {
-    if (place >= handle.size) {
-      place -= handle.size;
-      continue;
-    }
-    const auto variable = std::ranges::find_if(description.variables, [&](const Variable& one) {
-      return one.reference == handle.reference && one.type == handle.type;
-    });
-    if (variable == description.variables.end()) break;
-    return description.name_of({static_cast<std::size_t>(variable - description.variables.begin()), place});
-  }
-  return "?";
-}
 
 class DerivativeCheck {
  public:
@@ -210,6 +192,21 @@ class DerivativeCheck {
 
 }  // namespace
 
+std::string element_of(const ModelDescription& description, std::span<const Handle> handles, std::size_t place) {
+  for (const Handle& handle : handles) {
+    if (place >= handle.size) {
+      place -= handle.size;
+      continue;
+    }
+    const auto variable = std::ranges::find_if(description.variables, [&](const Variable& one) {
+      return one.reference == handle.reference && one.type == handle.type;
+    });
+    if (variable == description.variables.end()) break;
+    return description.name_of({static_cast<std::size_t>(variable - description.variables.begin()), place});
+  }
+  return "?";
+}
+
 Status check_derivatives(FmuBlock& block) {
   if (block.setup.co_simulation != 0 || block.setup.state_directional == 0) return {};
   Setup differences = block.setup;
@@ -235,11 +232,15 @@ Status check_derivatives(FmuBlock& block) {
     fault = check.fault_at(check.points()[k], (*said)[k], (*fine)[k], (*wide)[k], (*far)[k]);
     if (fault.empty()) return {};
   }
-  return fail(Error{.file = block.file->name(),
-                    .place = "directional derivatives",
-                    .value = fault,
-                    .rule = kDerivativeRule,
-                    .advice = "tell its maker; an FMU exported without directional derivatives works"});
+  return fail(false_derivatives(*block.file, std::move(fault)));
+}
+
+Error false_derivatives(const FmuFile& file, std::string which) {
+  return {.file = file.name(),
+          .place = "directional derivatives",
+          .value = std::move(which),
+          .rule = "gives directional derivatives that are not the derivatives of its own values",
+          .advice = "export it without them, or tell its maker"};
 }
 
 }  // namespace sealwatch::fmi

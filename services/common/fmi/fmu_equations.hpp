@@ -98,4 +98,11 @@ class FmuEquations final : public RuntimeEquations {
 /// good, is asked for none from then on.
 [[nodiscard]] Status check_derivatives(FmuBlock& block);
 
+/// The name of an element of whole variables that stand one behind the other.
+[[nodiscard]] std::string element_of(const ModelDescription& description, std::span<const Handle> handles,
+                                     std::size_t place);
+
+/// The unit is refused: `which` of its directional derivatives are wrong.
+[[nodiscard]] Error false_derivatives(const FmuFile& file, std::string which);
+
 }  // namespace sealwatch::fmi

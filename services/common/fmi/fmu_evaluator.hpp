@@ -1,8 +1,11 @@
 // One run of an FMU's equations (fmu_equations.hpp).
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "services/common/fmi/fmu_equations.hpp"
@@ -14,6 +17,12 @@ struct BlockValues {
   std::vector<double> z;
   std::vector<bool> signs;  ///< of the event indicators
   RuntimeMatrix by_state, by_input, by_parameter;
+};
+
+/// A way from a point, in SI: of the states or of the inputs.
+struct BesidePoint {
+  bool of_states = true;
+  std::vector<double> way;
 };
 
 /// The FMU itself: begins, and gives z at points.
@@ -56,9 +65,18 @@ class RunningBlock {
   [[nodiscard]] bool is_jump(double step_s) const;
   [[nodiscard]] std::string fault_of_step(double step_s);
   [[nodiscard]] const BlockValues* in_trouble(std::string words) { return trouble_ = std::move(words), nullptr; }
+  /// Whether the derivatives that the unit gave at the point asked last are those of its values: looked at ever less
+  /// often, so that no fifth of a run is passed over; false three times in a row: trouble.
+  [[nodiscard]] bool derivatives_hold(double time_s, const EvaluationRequest& asked);
+  /// z at the last point asked, a share of a way off; nothing where the unit has no value there.
+  [[nodiscard]] std::optional<std::vector<double>> z_beside(double time_s, const BesidePoint& beside, double share);
+  /// The first row of z whose derivatives along the way are not those of its values; nothing where none is wrong.
+  [[nodiscard]] std::optional<std::size_t> false_row(double time_s, const BesidePoint& beside,
+                                                     const RuntimeMatrix& given);
   void end_at(double time_s);
   [[nodiscard]] bool is_known(double time_s, const EvaluationRequest& wanted) const;
   void convert(const Evaluation& values, const EvaluationRequest& wanted);
+  [[nodiscard]] std::vector<double> z_of(const Evaluation& values) const;
   void convert_jacobian(std::span<const double> derivatives, std::span<const double> outputs, std::size_t columns,
                         bool of_states);
   [[nodiscard]] bool differentiate_by_parameters(double time_s);
@@ -75,7 +93,8 @@ class RunningBlock {
   EvaluationRequest known_;
   double ended_s_ = std::numeric_limits<double>::infinity();  ///< when it asked to end: it has no values after that
   double step_s_ = 0.0;                                       ///< of a Co-Simulation unit with equal steps
-  double stepped_to_s_ = std::numeric_limits<double>::quiet_NaN();  ///< by a Co-Simulation unit
+  double stepped_to_s_ = std::numeric_limits<double>::quiet_NaN();            ///< by a Co-Simulation unit
+  std::uint64_t times_differentiated_ = 0, next_look_ = 0, times_false_ = 0;  ///< the last in a row
   BlockValues values_;
   std::string trouble_;
 };

@@ -23,7 +23,7 @@ std::string fault_of_binary(const std::filesystem::path& file) {
   if (!std::string_view(header.data(), 4)
            .starts_with("\x7f"
                         "ELF"))
-    return "is no binary for Linux";
+    return "is not a binary for Linux";
   if (byte(4) != 2) return "is a binary for 32 bits";
   constexpr unsigned kX86_64 = 62;
   const unsigned machine = byte(18) + 256U * byte(19);
@@ -120,11 +120,17 @@ Status FmuFile::find_binary() {
     return fail(refusal("its member " + binary_ + " " + fault, "export the FMU for Linux on x86-64"));
   }
   std::set<std::string> platforms;
+  std::string others;  // of this platform
   for (const std::string& member : unpacked_.members) {
     if (!member.starts_with("binaries/")) continue;
+    if (member.starts_with("binaries/" + platform + "/") && member.ends_with(".so"))
+      others += (others.empty() ? "" : ", ") + member;
     const std::string rest = member.substr(9);
     if (const auto end = rest.find('/'); end != std::string::npos && end > 0) platforms.insert(rest.substr(0, end));
   }
+  if (!others.empty())
+    return fail(refusal("has no binary " + binary_ + ", after its modelIdentifier, but " + others,
+                        "give the binary the name that modelIdentifier says"));
   std::string there;
   for (const std::string& one : platforms) there += (there.empty() ? "" : ", ") + one;
   const bool has_sources = std::ranges::any_of(

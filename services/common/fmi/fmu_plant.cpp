@@ -140,8 +140,8 @@ class Builder {
     const auto check = [&](const std::string& key, const std::string& name, FmiCausality causality) {
       const Variable* variable = description_->find(name.substr(0, name.find('[')));
       if (variable != nullptr && variable->causality != causality)
-        complain(key, fault(name, "is no " + std::string(name_of(causality)) + " of the FMU, but its " +
-                                      std::string(name_of(variable->causality))));
+        complain(key, fault(name, "is declared as " + std::string(name_of(variable->causality)) +
+                                      " in the FMU, not as " + std::string(name_of(causality))));
     };
     for (const auto& [name, value] : section_.inputs)
       choose("fmu.inputs." + name, name, inputs, selection.inputs),

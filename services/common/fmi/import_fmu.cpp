@@ -516,7 +516,7 @@ class Writer {
       const Variable& variable = fmu_.variables[row.element.variable];
       const double value = row.scale.to_si(start_of_parameter(row.element));
       const double reach = value == 0.0 ? 1.0 : 9.0 * std::abs(value);
-      double min = value > 0.0 ? 0.1 * value : value - reach, max = value < 0.0 ? 0.1 * value : value + reach;
+      double min = value > 0.0 ? value / 10.0 : value - reach, max = value < 0.0 ? value / 10.0 : value + reach;
       if (variable.size > 1) max = reach_of_array(row), min = -max;
       if (variable.min) min = std::max(min, row.scale.to_si(*variable.min));
       if (variable.max) max = std::min(max, row.scale.to_si(*variable.max));

@@ -137,7 +137,7 @@ Result<ModelDescription> read_model_description(const std::string& file, std::st
           .file = file,
           .place = "modelDescription.xml, line " + std::to_string(1 + std::ranges::count(text.substr(0, end), '\n')),
           .value = {},
-          .rule = std::string("is no XML: ") + parsed.description(),
+          .rule = std::string("is not XML: ") + parsed.description(),
           .advice = "export the FMU again with the tool that made it"});
     }
     return read_root(reader, document.child("fmiModelDescription"), settings);

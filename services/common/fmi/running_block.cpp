@@ -120,6 +120,7 @@ const BlockValues* RunningBlock::at(double time_s, std::span<const double> state
   known_time_s_ = std::numeric_limits<double>::quiet_NaN();
   if (!values) return trouble_ = values.error().describe(), nullptr;
   convert(*values, asked);
+  if (!derivatives_hold(time_s, asked)) return nullptr;
   if (wanted.by_parameter != 0 && !in_one && !differentiate_by_parameters(time_s)) return nullptr;
   known_time_s_ = time_s, known_states_ = states_, known_inputs_ = inputs_, known_ = wanted;
   return &values_;
@@ -245,14 +246,18 @@ void RunningBlock::set_point(std::span<const double> states, std::span<const dou
     inputs_[block_.inputs[k].place] = block_.inputs[k].unit.from_si(inputs[k]);
 }
 
+std::vector<double> RunningBlock::z_of(const Evaluation& values) const {
+  std::vector<double> z;
+  for (std::size_t k = 0; k < states_.size(); ++k) z.push_back(rate(k, values.derivatives[k]));
+  for (const Port& variable : block_.variables) z.push_back(variable.unit.to_si(values.outputs[variable.place]));
+  return z;
+}
+
 void RunningBlock::convert(const Evaluation& values, const EvaluationRequest& wanted) {
   const std::size_t states = states_.size(), variables = block_.variables.size(), outputs = values.outputs.size();
-  values_.z.resize(states + variables);
+  values_.z = z_of(values);
   values_.signs.resize(values.indicators.size());
   for (std::size_t k = 0; k < values.indicators.size(); ++k) values_.signs[k] = values.indicators[k] > 0.0;
-  for (std::size_t k = 0; k < states; ++k) values_.z[k] = rate(k, values.derivatives[k]);
-  for (std::size_t k = 0; k < variables; ++k)
-    values_.z[states + k] = block_.variables[k].unit.to_si(values.outputs[block_.variables[k].place]);
   if (wanted.by_state != 0) convert_jacobian(values.derivatives_by_state, values.outputs_by_state, states, true);
   if (wanted.by_input != 0) {
     const std::size_t known = states > 0    ? values.derivatives_by_input.size() / states

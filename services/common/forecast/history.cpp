@@ -98,7 +98,7 @@ class HistoryParser {
   Status read_header(const std::string& line) {
     columns_.header = split(line);
     if (columns_.header.size() > kMostColumns)
-      return fail(at({}, std::to_string(columns_.header.size()) + " columns", "is no history",
+      return fail(at({}, std::to_string(columns_.header.size()) + " columns", "is not a history",
                      "a history needs time[iso8601] and theta[1], one row per test"));
     const std::string worn = worn_column(seal_), worn_std = worn_column(seal_, "_std");
     const std::vector<std::string> known = {"time[iso8601]", "theta[1]", "theta_std[1]", worn, worn_std};

@@ -31,7 +31,10 @@ Result<Explanation> Analysis::analyse() {
   Result<Baseline> baseline = fit_baseline(asset_, fit_, holdout_, options_, time_);
   if (!baseline) return fail(baseline.error());
   take_up(std::move(*baseline));
-  if (const Status status = look_for_what_is_missing(); !status) return cannot_look(status.error());
+  if (const auto runaway = follows_no_machine())
+    return tell_no_law(runs_away(in_words(*runaway), advice_for_runaway()));
+  if (const Status status = look_for_what_is_missing(); !status)
+    return tell_no_law(time_.in_time("what is missing") ? cannot_be_asked(status.error()) : time_was_up());
   if (at_rest(*baseline_, prepared(fit_))) why_none_ = nothing_moves();
   if (const auto part = driven_unseen(); part && !why_none_) why_none_ = drives_unseen(*part);
   if (!why_none_ && time_.in_time("whether something changed between the tests")) look_for_a_change();
@@ -64,8 +67,13 @@ void Analysis::take_up(Baseline baseline) {
   result_.notes = std::move(baseline.notes);
 }
 
-Result<Explanation> Analysis::cannot_look(const Error& why) {
-  why_none_ = time_.in_time("what is missing") ? cannot_be_asked(why) : time_was_up();
+std::optional<Runaway> Analysis::follows_no_machine() const {
+  if (windowed() || excess(*baseline_) <= kGross) return std::nullopt;
+  return find_runaway(baseline_->asset, fit_.samples.front());
+}
+
+Result<Explanation> Analysis::tell_no_law(WhyNone why) {
+  why_none_ = std::move(why);
   time_.allow_what_is_needed();
   result_.statistically_significant = excess(*baseline_) > kGross;  // seen without any law
   if (result_.statistically_significant) result_.p_value = kSmallestP;

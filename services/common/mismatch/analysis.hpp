@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sealwatch/mismatch/explain.hpp"
+#include "services/common/estimation/runaway.hpp"
 #include "services/common/mismatch/baseline.hpp"
 #include "services/common/mismatch/datasheet.hpp"
 #include "services/common/mismatch/held_out.hpp"
@@ -71,8 +72,10 @@ class Analysis {
   static void keep_what_was_replaced(Naming& naming, const Naming& before);
   // With the laws that were found beside inexact sensors, one value of the asset file does what all sensors did.
   [[nodiscard]] bool value_in_place_of_sensors(const Naming& found, const std::vector<KnownValue>& sensors) const;
-  // The model follows the recordings, but nothing can be asked of it: no law, no test, no power.
-  Result<Explanation> cannot_look(const Error& why);
+  // A plant that runs away by itself and was left behind by the machine: laws would bend to where it happens to go.
+  [[nodiscard]] std::optional<Runaway> follows_no_machine() const;
+  // The model was fitted, but nothing can be asked of it: no law, no test, no power.
+  Result<Explanation> tell_no_law(WhyNone why);
   void say_how_likely_by_noise(const Screening& screening);
   // Of other data; what was predicted before is of no use.
   void forget_predictions() { predictions_ = std::make_shared<KeptPredictions>(); }
@@ -181,7 +184,8 @@ class Analysis {
   std::optional<OwnValues> own_;  ///< each test has its own of a parameter, and nothing in common is preferred
   Naming naming_;
   Trial best_;
-  Trial tried_;  ///< what was taken back, as it explains too little
+  std::string too_small_by_size_;  ///< a law that was taken out by law_sizes alone, in words
+  Trial tried_;                    ///< what was taken back, as it explains too little
   bool proven_ = false;
   bool all_compared_ = true;                               ///< the models can be simulated on every recording
   bool none_compared_ = false;                             ///< of the held-out recordings

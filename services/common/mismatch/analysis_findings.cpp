@@ -48,6 +48,7 @@ void Analysis::describe_what_was_found() {
     const std::optional<NotTold> law = not_told_from_zero(best_, resolution_of(prepared(fit_), plant()));
     if (!law) break;
     result_.notes.push_back(law->sentence);
+    if (!law->by_size.empty()) too_small_by_size_ = law->by_size;
     take_out(law->slot);
   }
   while (!best_.effects.empty()) {
@@ -286,6 +287,7 @@ void Analysis::say_what_else_is_known() {
     result_.notes.push_back(left_beside(law_at(best_.effects.front()), share_left_by_best(naming_)));
   const bool undetermined = result_.verdict == Verdict::undetermined;
   if (input_swings_ && undetermined) remark_faster_sampling(result_);
+  if (undetermined && !too_small_by_size_.empty()) remark_law_sizes(too_small_by_size_, result_);
   const bool nothing_asks = naming_.first.p_value > options_.false_alarm_rate;
   if (result_.statistically_significant && nothing_asks && !result_.location.empty()) remark_disturbed_signal(result_);
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "sealwatch/model/law_sizes.hpp"
 #include "sealwatch/model/physics.hpp"
 #include "services/common/mismatch/candidates.hpp"
 #include "services/common/mismatch/criterion.hpp"
@@ -32,6 +33,41 @@ std::string may_be_the_form(const LawAt& law, double share) {
          " % of what it took, and may be its exact form.";
 }
 
+/// Of the strengths of a law the one that is told best: by how many of its standard errors.
+struct Told {
+  double errors = 0.0;
+  const LawParameter* strength = nullptr;
+};
+
+Told told_best(const FittedModel& model, const Effect& effect, const std::vector<double>& errors,
+               const Resolution* resolution) {
+  Told best;
+  for (const std::size_t s : strengths_of(*effect.law)) {
+    const LawParameter& strength = effect.law->parameters[s];
+    const std::string name = physics_parameter_name(effect.element, effect.law->id, strength.name);
+    const auto unknown = std::ranges::find(model.problem.shared, name, &Unknown::name);
+    const auto k = static_cast<std::size_t>(unknown - model.problem.shared.begin());
+    if (unknown == model.problem.shared.end() || !std::isfinite(errors[k]) || errors[k] <= 0.0)
+      return {std::numeric_limits<double>::infinity(), &strength};
+    const double error = resolution == nullptr ? errors[k] : std::hypot(errors[k], resolution->of(strength));
+    const double by = std::abs(*estimate_of(model, name)) / error;
+    if (best.strength == nullptr || by > best.errors) best = {by, &strength};
+  }
+  return best;
+}
+
+/// "": the plant's file gives no size for it, or it is a delay, which is known no better than the samples lie apart.
+std::string size_in_words(const FittedModel& model, const Effect& effect, const LawParameter& strength,
+                          const PlantDescription& plant) {
+  const std::string unit(strength.unit);
+  if (strength.own_size || plant.file.empty() || unit == "s") return "";
+  const double value = *estimate_of(model, physics_parameter_name(effect.element, effect.law->id, strength.name));
+  return law_in_words(law_at(effect)) + " with " + std::string(strength.name) + " = " + number(value) + " " + unit +
+         " fits better and is not claimed: by law_sizes in the plant file (" + unit + ": " +
+         number(law_size(plant, strength)) + ") such a law matters here from " +
+         number(significant_size(plant, strength)) + " " + unit + " only, beside which this is nothing";
+}
+
 }  // namespace
 
 double share_left(const FittedModel& without, const FittedModel& with, double promised) {
@@ -48,29 +84,18 @@ std::optional<NotTold> not_told_from_zero(const Trial& trial, const Resolution& 
   constexpr double kTold = 2.0;  // standard errors: 95 % of them lie closer to the true value
   const FittedModel& model = *trial.model;
   const std::vector<double> errors = standard_errors(model);
-  // Of the strengths of one law the one that is told best.
-  const auto told_by = [&](const Effect& effect) {
-    double most = 0.0;
-    for (const std::size_t s : strengths_of(*effect.law)) {
-      const LawParameter& strength = effect.law->parameters[s];
-      const std::string name = physics_parameter_name(effect.element, effect.law->id, strength.name);
-      const auto unknown = std::ranges::find(model.problem.shared, name, &Unknown::name);
-      const auto k = static_cast<std::size_t>(unknown - model.problem.shared.begin());
-      if (unknown == model.problem.shared.end() || !std::isfinite(errors[k]) || errors[k] <= 0.0)
-        return std::numeric_limits<double>::infinity();
-      most = std::max(most, std::abs(*estimate_of(model, name)) / std::hypot(errors[k], resolution.of(strength)));
-    }
-    return most;
-  };
   std::optional<NotTold> least;
   double told = kTold;
-  for (std::size_t slot = 0; slot < trial.effects.size(); ++slot)
-    if (const double by = told_by(trial.effects[slot]); by < told) {
-      told = by;
-      least = NotTold{slot, "A law that fits better (" + law_in_words(law_at(trial.effects[slot])) +
-                                ") has a strength of only " + number(by, 2) +
-                                " standard errors, which may be nothing: it is not claimed."};
-    }
+  for (std::size_t slot = 0; slot < trial.effects.size(); ++slot) {
+    const Effect& effect = trial.effects[slot];
+    const Told by = told_best(model, effect, errors, &resolution);
+    if (by.errors >= told) continue;
+    told = by.errors;
+    least = NotTold{slot, "A law that fits better (" + law_in_words(law_at(effect)) + ") has a strength of only " +
+                              number(by.errors, 2) + " standard errors, which may be nothing: it is not claimed."};
+    if (const Told alone = told_best(model, effect, errors, nullptr); alone.errors >= kTold)
+      least->by_size = size_in_words(model, effect, *alone.strength, *resolution.plant);
+  }
   return least;
 }
 

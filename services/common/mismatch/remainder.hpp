@@ -38,6 +38,8 @@ struct Remainder {
 struct NotTold {
   std::size_t slot = 0;
   std::string sentence;
+  /// The entry of law_sizes without which its strength were told, and what it is there for; "": it has no part in that.
+  std::string by_size = {};
 };
 
 /// The one whose strength is nearest to nothing, where that is within two of its standard errors (standard_errors.hpp,

@@ -64,6 +64,13 @@ void remark_faster_sampling(Explanation& result) {
   result.next_test = "Record these tests at five times the sampling rate.";
 }
 
+void remark_law_sizes(const std::string& by_size, Explanation& result) {
+  result.summary += " But " + by_size + ".";
+  result.next_test =
+      "Check law_sizes in the plant file, which `sealwatch plant check` shows beside what they come to, "
+      "and analyse again.";
+}
+
 void remark_disturbed_signal(Explanation& result) {
   result.next_test = "Search the signal of " + element_in_words(result.location.front().element) +
                      " for outliers, and analyse again without them.";

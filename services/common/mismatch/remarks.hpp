@@ -26,6 +26,9 @@ void remark_values_beside(const std::string& instead, bool as_well, Explanation&
 /// The input's course between its samples may account for what is left.
 void remark_faster_sampling(Explanation& result);
 
+/// `by_size`: the law that is nothing beside the plant file's law_sizes, in words.
+void remark_law_sizes(const std::string& by_size, Explanation& result);
+
 /// Far from the noise, and no law asks for any of it: outliers, or what a cable picks up, at the first place.
 void remark_disturbed_signal(Explanation& result);
 

@@ -60,6 +60,11 @@ WhyNone differed_and_no_more(const std::string& course) {
           .next_test = kTestsOfOneTime};
 }
 
+WhyNone runs_away(const std::string& runaway, const std::string& advice) {
+  return {.summary = runaway + " No physics is named.",
+          .next_test = advice + " window_s in the plant file makes explain look at short pieces."};
+}
+
 std::string missed_by_trend(const ChannelComparison& worst) {
   return " On held-out recordings, with what the trend predicts for them, " + in_words(worst.channel) + " misses by " +
          number(worst.rms_after) + " times the noise: the prediction's error, or what the fitted tests do not show.";

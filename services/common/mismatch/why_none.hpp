@@ -51,4 +51,7 @@ struct WhyNone {
 /// The fitted recordings agree with the model; `worst`: of the held-out ones.
 [[nodiscard]] WhyNone those_kept_aside_differ(const ChannelComparison& worst);
 
+/// What follows no machine over a whole test names nothing that is missing in it. `runaway`: in words; `advice`: on it.
+[[nodiscard]] WhyNone runs_away(const std::string& runaway, const std::string& advice);
+
 }  // namespace sealwatch::mismatch

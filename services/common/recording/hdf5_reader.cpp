@@ -159,7 +159,7 @@ herr_t visit(hid_t file, const char* name, const H5O_info_t* info, void* reader)
 Result<std::vector<MatVariable>> read_all(const std::string& path) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what went wrong is returned, not printed
   const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose);
-  if (!file) return fail("is no HDF5 file, or it is damaged");
+  if (!file) return fail("is not an HDF5 file, or it is damaged");
   std::vector<MatVariable> found;
   Reader reader(found);
   if (H5Ovisit1(file.get(), H5_INDEX_NAME, H5_ITER_INC, &visit, &reader) < 0 && reader.status)

@@ -162,8 +162,8 @@ std::string unit_of(const OfferedColumn& column) {
 std::string unit_at_the_end(std::string_view text, const std::string& si_unit) {
   const std::size_t begin = text.find_last_of(" _");
   const std::string_view last = begin == std::string_view::npos ? std::string_view() : text.substr(begin + 1);
-  const bool plain = si_unit.empty() || si_unit == "1";
-  const bool fits = plain ? last == "%" : last.size() > 1 && convert_unit(last, si_unit).has_value();
+  const bool plain = si_unit.empty() || si_unit == "1", number = last == "%" || last == "counts" || last == "count";
+  const bool fits = number || (!plain && last.size() > 1 && convert_unit(last, si_unit).has_value());
   return std::string(fits ? last : std::string_view());
 }
 
@@ -192,7 +192,7 @@ Result<std::size_t> find_offered(const std::vector<OfferedColumn>& offered, cons
   std::vector<std::string> texts;
   for (const OfferedColumn& column : offered)
     if (!column.text.empty()) texts.push_back(column.text);
-  return fail("is no column of this log", suggest(wanted, texts));
+  return fail("is not a column of this log", suggest(wanted, texts));
 }
 
 Result<MappedColumns> map_columns(const std::vector<OfferedColumn>& offered, const PlantDescription& plant,

@@ -37,7 +37,7 @@ struct MappedColumns {
 [[nodiscard]] std::string unit_of(const OfferedColumn& column);
 
 /// The unit at the end of a name, "t_ms", "Speed rpm", where it is one of `si_unit`'s quantity and no letter, which may be
-/// a chamber's; of a plain number "%" alone. "" where there is none.
+/// a chamber's; "%" and "counts" of any quantity, which are to be refused without a scale. "" where there is none.
 [[nodiscard]] std::string unit_at_the_end(std::string_view text, const std::string& si_unit);
 
 /// Errors name the channel, not the place.

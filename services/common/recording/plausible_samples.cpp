@@ -16,7 +16,7 @@ Status check_column(std::span<double> values, const std::string& name, const std
     const auto number = plausible(values[row], largest);
     if (!number)
       return fail(error_at("row " + std::to_string(first_row + row) + ", column " + name, text::general(values[row]),
-                           "is no " + unit + " that can be measured here: more than " + text::general(largest),
+                           "cannot be measured here: more than " + text::general(largest) + " " + unit,
                            "take the row out, or mend what wrote it"));
     values[row] = *number;
   }

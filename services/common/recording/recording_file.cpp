@@ -66,11 +66,11 @@ Result<Log> read_vectors(const std::string& path, const PlantDescription& plant,
 }
 
 /// A file with none of the map's columns and with the header of docs/recordings.md: what this program wrote for an
-/// asset whose own logs look otherwise.
+/// asset whose own logs look otherwise. A map without columns, which says how a log is laid out, is of this one.
 bool is_in_own_format(const FoundLayout& layout, const ChannelMap& map) {
   const auto is_time = [](const std::string& cell) { return cell == "time" || cell.starts_with("time["); };
-  return layout.delimiter == ',' && layout.header_row == 1 && layout.units_row == 0 && !has_a_column_of(layout, map) &&
-         std::ranges::any_of(layout.header, is_time);
+  return !map.columns.empty() && layout.delimiter == ',' && layout.header_row == 1 && layout.units_row == 0 &&
+         !has_a_column_of(layout, map) && std::ranges::any_of(layout.header, is_time);
 }
 
 Result<Log> read_text(const std::string& path, const PlantDescription& plant, const ChannelMap& map) {

@@ -148,9 +148,9 @@ std::string units_in_words(std::string_view si_unit) {
 tl::unexpected<Error> other_quantity(const UnitSystem& system, std::string_view unit, const ut_unit& from,
                                      std::string_view si_unit) {
   const std::string si(si_unit);
-  if (unit == "%") return fail("is a share and no " + si, "in the map: unit: " + si + ", and as scale what 1 % is");
+  if (unit == "%") return fail("is a share, not " + si, "in the map: unit: " + si + ", and as scale what 1 % is");
   if (unit == "counts" || unit == "count")
-    return fail("are a plain number and no " + si,
+    return fail("are a plain number, not " + si,
                 "in the map: unit: " + si + ", scale: what one count is, offset: what no count is");
   const Unit frequency = si_unit == "rad/s" ? system.parse("1/s") : nullptr;
   if (frequency && same_dimension(from, *frequency))

@@ -84,7 +84,8 @@ Result<LifeStore> LifeStore::create(const std::string& folder, const std::string
 
 Result<LifeStore> LifeStore::open(const std::string& folder) {
   auto text = contents(fs::path(folder) / kSettingFile);
-  if (!text) return fail(about(folder, "is no folder of a verification", "give the --out of `sealwatch verify rul`"));
+  if (!text)
+    return fail(about(folder, "is not a folder of a verification", "give the --out of `sealwatch verify rul`"));
   return LifeStore(folder, std::move(*text));
 }
 

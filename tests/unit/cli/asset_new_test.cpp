@@ -122,6 +122,29 @@ states: {T: {der: power/C, unit: K, start: temperature}}
   EXPECT_EQ(asset->channel_map.columns.at("temperature").column, "Block temp (C)");
 }
 
+// What a count or a percent is worth stands in no log: volts and radians a second would be a guess.
+TEST_F(AssetNew, ColumnsCalledCountsOrPercentAreNotTakenForTheChannelsUnit) {
+  std::ofstream(path("motor.yaml")) << R"(name: motor_of_asset_new
+meaning: a motor
+inputs: {u: {unit: V}}
+outputs: {current: {value: i, unit: A, noise_std: 0.01}, speed: {value: w, unit: rad/s, noise_std: 0.2}}
+parameters: {a: {value: 1.0, unit: A/(V s)}, k: {value: 1.0, unit: rad/(A s2)}}
+states: {i: {der: a*u, unit: A, start: current}, w: {der: k*i, unit: rad/s, start: speed}}
+elements: {}
+law_sizes: {}
+)";
+  ASSERT_EQ(make("t [s],U_counts,n_%,i [A]\n0,100,50,1\n1,200,51,1\n2,300,52,1\n", path("motor.yaml")), kOk);
+  const Result<AssetConfig> asset = load_asset(path("a.yaml"));
+  ASSERT_TRUE(asset) << asset.error().describe();
+  EXPECT_TRUE(asset->channel_map.columns.contains("current"));
+  EXPECT_FALSE(asset->channel_map.columns.contains("u"));
+  EXPECT_FALSE(asset->channel_map.columns.contains("speed"));
+  std::ostringstream text;
+  text << std::ifstream(path("a.yaml")).rdbuf();
+  EXPECT_THAT(text.str(), ::testing::HasSubstr("{column: \"U_counts\", scale: 1, unit: \"V\"}"));
+  EXPECT_THAT(text.str(), ::testing::HasSubstr("{column: \"n_%\", scale: 0.01, unit: \"rad/s\"}"));
+}
+
 TEST_F(AssetNew, APlantFileIsNamedAsSeenFromTheAsset) {
   std::filesystem::create_directories(folder_ / "plants");
   std::ofstream(folder_ / "plants" / "shaft.yaml") << R"(name: shaft_of_asset_new
@@ -274,7 +297,7 @@ TEST_F(AssetNew, AColumnWhoseCellsAreNoNumbersIsNamed) {
   EXPECT_THAT(told, ::testing::HasSubstr("as no column has the unit: valve_lift [m]"));
   std::ostringstream text;
   text << std::ifstream(path("a.yaml")).rdbuf();
-  EXPECT_THAT(text.str(), ::testing::HasSubstr("Pressure [psig] may be it, but '1,235.5' in row 3 is no number"));
+  EXPECT_THAT(text.str(), ::testing::HasSubstr("Pressure [psig] may be it, but '1,235.5' in row 3 is not a number"));
 }
 
 TEST_F(AssetNew, AColumnWithoutAUnitIsMarked) {
@@ -288,7 +311,7 @@ TEST_F(AssetNew, AUnitThatIsNotKnownIsNotSaidToBeMissing) {
   ASSERT_EQ(make("t [s],motor_voltage [V],position (furlongs/x)\n0,1,2048\n1,1,2049\n2,1,2050\n"), kOk);
   std::ifstream written(path("a.yaml"));
   const std::string text{std::istreambuf_iterator<char>(written), {}};
-  EXPECT_THAT(text, ::testing::HasSubstr("(furlongs/x) is no known unit: taken for m, check it"));
+  EXPECT_THAT(text, ::testing::HasSubstr("(furlongs/x) is not a known unit: taken for m, check it"));
 }
 
 TEST_F(AssetNew, NothingIsWrittenOverAndNothingIsMadeUp) {

@@ -6,8 +6,9 @@
 #include <random>
 
 #include "sealwatch/estimation/actuator_fit.hpp"
+#include "sealwatch/mismatch/explain.hpp"
 #include "sealwatch/model/simulation.hpp"
-#include "services/cli/runaway.hpp"
+#include "services/common/estimation/runaway.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "tests/unit/runtime/yaml_place.hpp"
 
@@ -227,6 +228,48 @@ TEST(OwnModel, APlantThatRunsAwayIsTold) {
   EXPECT_GT(standing->decades, 8.0) << "exp(4.4 t) over 8 s are 15";
   EXPECT_FALSE(found_with("hanging", "-20"));
   EXPECT_FALSE(found_with("weightless", "0"));
+}
+
+/// The pendulum of `kPendulum` with gravity 20, held by a controller of `stiffness` that moves it to and fro.
+Recording held_pendulum(double stiffness, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0.0, 1.0e-4);
+  Recording recording;
+  recording.asset_id = "U-1";
+  recording.file = recording.recording_id = recording.content_hash = std::to_string(seed);
+  Series torque{.name = "u", .unit = "N m", .values = {}};
+  Series angle{.name = "angle", .unit = "rad", .noise_std = 1.0e-4, .values = {}};
+  constexpr double kInertia = 0.1, kStep = 1.0e-4;
+  double phi = 0.0, w = 0.0;
+  for (int k = 0; k < 80001; ++k) {
+    const double wanted = 0.1 * std::sin(1.5 * kStep * k);
+    const double u = kInertia * (stiffness * (wanted - phi) - 10.0 * w);
+    if (k % 100 == 0) {
+      recording.samples.time_s.push_back(kStep * k);
+      torque.values.push_back(u);
+      angle.values.push_back(phi + noise(random));
+    }
+    w += kStep * (20.0 * std::sin(phi) - 0.2 * w + u / kInertia);
+    phi += kStep * w;
+  }
+  recording.samples.channels = {torque, angle};
+  return recording;
+}
+
+// Its equations are right: whatever is named in them or in the recorded torque would be a wrong name.
+TEST(OwnModel, NothingIsBlamedWhereThePlantRunsAway) {
+  const testing::YamlPlace place;
+  std::string plant = kPendulum;
+  plant.replace(plant.find("GRAVITY"), 7, "20");
+  plant.replace(plant.find("standing"), 8, "held");
+  const AssetConfig asset = asset_of(place, plant, "");
+  const std::vector<Recording> fit = {held_pendulum(60.0, 1)}, holdout = {held_pendulum(90.0, 2)};
+  const auto found = mismatch::explain(asset, fit, holdout);
+  ASSERT_TRUE(found) << found.error().describe();
+  EXPECT_EQ(found->verdict, mismatch::Verdict::undetermined);
+  EXPECT_THAT(found->summary, ::testing::HasSubstr("runs away by itself: an error in the start of angle grows 10^"));
+  EXPECT_THAT(found->next_test, ::testing::HasSubstr("its controller, into the plant's equations"));
+  EXPECT_TRUE(found->location.empty()) << found->location.front().element << ": " << found->summary;
 }
 
 }  // namespace

@@ -154,7 +154,10 @@ TEST_F(FmuArchive, AnotherPlatformIsNamed) {
   EXPECT_THAT(open({{"modelDescription.xml", xml}, {"binaries/linux64/model.so", arm}}),
               HasSubstr("another processor (ELF machine 183)"));
   EXPECT_THAT(open({{"modelDescription.xml", xml}, {"binaries/linux64/model.so", "hello"}}),
-              HasSubstr("no binary for Linux"));
+              HasSubstr("is not a binary for Linux"));
+  EXPECT_THAT(open({{"modelDescription.xml", xml}, {"binaries/linux64/Model-1.so", "x"}}),
+              HasSubstr("has no binary binaries/linux64/model.so, after its modelIdentifier, but "
+                        "binaries/linux64/Model-1.so"));
 }
 
 }  // namespace

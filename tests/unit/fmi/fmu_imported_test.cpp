@@ -58,6 +58,41 @@ Result<SimulatedOutputs> simulated(const std::string& plant, double value, const
   return (*simulation)->run((*simulation)->start(), quantities);
 }
 
+/// The spring as tools for Modelica name and describe it: quotes, brackets, blanks, aliases, an enumeration, starts that
+/// are left out, five hundred variables.
+TestUnit as_a_vendor_exports_it() {
+  TestUnit unit = spring_return("fmu_spring_talks2");
+  const auto put = [&](const std::string& name, int reference, const std::string& attributes, const std::string& type) {
+    unit.variables += "<ScalarVariable name=\"" + name + "\" valueReference=\"" + std::to_string(reference) + "\" " +
+                      attributes + ">" + type + "</ScalarVariable>\n";
+  };
+  unit.variables.clear();
+  put("$STATESET1.x[1]", 1000, "initial=\"exact\"", "<Real unit=\"m\" start=\"0\" nominal=\"1e-3\"/>");
+  put("'my body'.v", 1001, "initial=\"exact\"", "<Real unit=\"m/s\" start=\"0\"/>");
+  put("der($STATESET1.x[1])", 2000, "", "<Real derivative=\"1\"/>");
+  put("der('my body'.v)", 2001, "", "<Real derivative=\"2\"/>");
+  put("u", 3000, "causality=\"input\"", "<Real/>");
+  put("body.m", 4000, "causality=\"parameter\" variability=\"tunable\"", "<Real unit=\"kg\"/>");
+  put("damper[1].d", 4001, "causality=\"parameter\" variability=\"tunable\"", "<Real start=\"2e3\"/>");
+  put("spring.c", 4002, "causality=\"parameter\" variability=\"fixed\"", "<Real start=\"1e4\"/>");
+  put("k_F", 4003, "causality=\"calculatedParameter\" variability=\"fixed\"", "<Real/>");
+  put("y, 1: {#}", 5000, "causality=\"output\"", "<Real unit=\"m\"/>");
+  for (int k = 0; k < 500; ++k)
+    put("pipe.mediums[" + std::to_string(k / 10 + 1) + "].'h " + std::to_string(k % 10) + "'", 1000, "", "<Real/>");
+  return unit;
+}
+
+TEST(ImportedFmu, OneAsAVendorsToolExportsItIsSimulated) {
+  const TestFolder folder;
+  const auto said = simulated(imported(folder, as_a_vendor_exports_it(), "of_a_vendor"), 1.0, "y_1");
+  ASSERT_TRUE(said) << said.error().describe();
+  const TestFolder plain;
+  const auto expected =
+      simulated(imported(plain, spring_return("fmu_spring_return2"), "of_no_vendor"), 1.0, "position");
+  ASSERT_TRUE(expected) << expected.error().describe();
+  EXPECT_LT((said->values - expected->values).cwiseAbs().maxCoeff(), 1e-9);
+}
+
 TEST(ImportedFmu, OneOfThousandsOfOutputsIsAPlantFileToo) {
   const TestFolder folder;
   TestUnit unit = spring_return("fmu_spring_return2");

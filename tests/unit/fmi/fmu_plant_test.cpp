@@ -190,7 +190,7 @@ TEST(FmuPlant, FaultsNamePlaceValueAndRule) {
               HasSubstr("cannot be opened: No such file"));
   EXPECT_THAT(fault(folder, with(good, "variable: position", "variable: positin")),
               HasSubstr("did you mean 'position'"));
-  EXPECT_THAT(fault(folder, with(good, "{u: drive_voltage", "{M: drive_voltage")), HasSubstr("is no input of the FMU"));
+  EXPECT_THAT(fault(folder, with(good, "{u: drive_voltage", "{M: drive_voltage")), HasSubstr("not as input"));
   EXPECT_THAT(fault(folder, with(good, "drive_voltage - u_lost", "drive_voltag - u_lost")), HasSubstr("drive_voltag"));
   EXPECT_THAT(fault(folder, with(good, "  x: {unit: m,", "  y: {unit: m,")),
               HasSubstr("is a state of the FMU and is missing"));
@@ -273,6 +273,28 @@ TEST(FmuPlant, OneThatLiesByItsInputsOrOfItsOutputsIsRefused) {
     const std::string fmu = folder.build(unit);
     EXPECT_THAT(fault(folder, plant_text(binary)),
                 AllOf(HasSubstr(said), HasSubstr("not the derivatives of its own values")));
+  }
+}
+
+// Sound at its start at 0.01 m, and all the way to 0.012. By inputs they are asked for only where a law is at one.
+TEST(FmuPlant, OneThatLiesWhereARunGoesIsRefusedThere) {
+  for (const char* binary : {"fmu_spring_lies_beyond2", "fmu_spring_lies_beyond_by_input2"}) {
+    const TestFolder folder;
+    TestUnit unit = spring_return(binary);
+    unit.directional = true;
+    const std::string fmu = folder.build(unit);
+    const auto plant = load_plant(written(folder, plant_text(binary)));
+    ASSERT_TRUE(plant) << plant.error().front().describe();
+    AssetConfig asset = nominal_asset(binary);
+    asset.physics = {law_at("driver", "driver_dead_time", binary)};
+    for (auto& one : asset.physics.front().parameters) one.second.value *= 0.01;
+    const auto simulation = PlantSimulation::create(asset, strokes()).value();
+    const std::vector<FreeQuantity> free = {*simulation->find(simulation->physics_parameters().front().name)};
+    const auto outputs = simulation->run(simulation->start(), free, kTight);
+    ASSERT_FALSE(outputs) << binary;
+    EXPECT_THAT(outputs.error().describe(),
+                AllOf(HasSubstr("model.fmu"), HasSubstr("those of der(v) at 0."),
+                      HasSubstr("gives directional derivatives that are not the derivatives of its own values")));
   }
 }
 

@@ -125,7 +125,7 @@ TEST(ModelDescription, AVariableIsFoundByEachOfItsNames) {
 
 TEST(ModelDescription, FaultsNameLineValueAndRule) {
   const std::string good = description_of(spring_return("fmu_spring_return2"));
-  EXPECT_THAT(refused("<a><b></a>"), HasSubstr("no XML"));
+  EXPECT_THAT(refused("<a><b></a>"), HasSubstr("is not XML"));
   EXPECT_THAT(refused("<a/>"), HasSubstr("no element fmiModelDescription"));
   EXPECT_THAT(refused(replaced(good, "\"2.0\"", "\"1.0\"")), AllOf(HasSubstr("'1.0'"), HasSubstr("line 2")));
   EXPECT_THAT(refused(replaced(good, "guid", "gid")), HasSubstr("lacks the attribute guid"));
@@ -136,7 +136,7 @@ TEST(ModelDescription, FaultsNameLineValueAndRule) {
   EXPECT_THAT(refused(replaced(good, "index=\"4\"", "index=\"5\"")), HasSubstr("no attribute derivative"));
   EXPECT_THAT(refused(replaced(good, "start=\"2e3\"", "start=\"two\"")), HasSubstr("start must be a number"));
   EXPECT_THAT(refused(replaced(good, "causality=\"input\"", "causality=\"inputs\"")),
-              HasSubstr("no causality of the standard"));
+              HasSubstr("is not a causality of the standard"));
   EXPECT_THAT(refused(replaced(good, "modelIdentifier=\"model\"", "modelIdentifier=\"../model\"")),
               HasSubstr("name of the C language"));
   const auto begin = good.find("<ModelExchange"), end = good.find("/>", begin) + 2;
@@ -149,7 +149,7 @@ TEST(ModelDescription, AStateOfAnotherTypeIsRefusedForItsType) {
     const std::size_t row = unit.variables.rfind("Float64", unit.variables.find(name));
     unit.variables.replace(row, 7, "Float32");
   }
-  EXPECT_THAT(refused(description_of(unit)), AllOf(HasSubstr("'x'"), HasSubstr("is a state that is no Float64")));
+  EXPECT_THAT(refused(description_of(unit)), AllOf(HasSubstr("'x'"), HasSubstr("is a state that is not a Float64")));
 }
 
 TEST(ModelDescription, OnlyClocksThatTickByThemselvesAreTaken) {

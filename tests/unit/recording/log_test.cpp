@@ -450,7 +450,7 @@ TEST_F(ForeignLog, ATestOfOneSampleIsNamed) {
 
 TEST_F(ForeignLog, WhatCannotBeUnderstoodIsNamedWithRowAndColumn) {
   EXPECT_THAT(error_of("Zeit;Druck B;Weg [mm]\n2031-04-12T03:00:00;1;60\n2031-04-12T03:00:01;1;60\n", kGermanMap),
-              HasSubstr("row 1, channel pressure_a: 'Druck A': is no column of this log; did you mean 'Druck B'?"));
+              HasSubstr("row 1, channel pressure_a: 'Druck A': is not a column of this log; did you mean 'Druck B'?"));
   EXPECT_THAT(error_of("Zeit;Druck A;Weg [furlong/x]\n2031-04-12T03:00:00;1;60\n", kGermanMap),
               HasSubstr("channel position: 'furlong/x': is not a known unit"));
   EXPECT_THAT(error_of("Zeit;Druck A;Weg [bar]\n2031-04-12T03:00:00;1;60\n", kGermanMap),
@@ -504,7 +504,7 @@ TEST_F(ForeignLog, Hdf5DataSetsAreColumnsByTheirPathOrItsLastPart) {
   ASSERT_TRUE(recording) << recording.error().describe();
   expect_two_rows(*recording);
   EXPECT_THAT(read_recording(write("b.h5", "no HDF5"), test_plant(), map).error().describe(),
-              HasSubstr("b.h5: is no HDF5 file, or it is damaged"));
+              HasSubstr("b.h5: is not an HDF5 file, or it is damaged"));
 }
 
 TEST(HeaderCell, IsANameAndAUnitWhereTheTextBehindIsOne) {

@@ -156,9 +156,11 @@ TEST_F(WildNumbers, AreRefusedByRowAndColumn) {
     const Result<Recording> result = read_recording(write("wild.csv", text), test_plant());
     return result ? std::string("was read") : result.error().describe();
   };
-  EXPECT_THAT(error_of("time,position\n0,1e308\n1,2\n"), HasSubstr("row 2, column position: '1e+308': is no m that"));
+  EXPECT_THAT(error_of("time,position\n0,1e308\n1,2\n"),
+              HasSubstr("row 2, column position: '1e+308': cannot be measured here: more than"));
   EXPECT_THAT(error_of("time,position\n0,1\n1,-1e300\n"), HasSubstr("row 3, column position: '-1e+300'"));
-  EXPECT_THAT(error_of("time,position\n0,1\n1e300,2\n"), HasSubstr("row 3, column time: '1e+300': is no s that"));
+  EXPECT_THAT(error_of("time,position\n0,1\n1e300,2\n"),
+              HasSubstr("row 3, column time: '1e+300': cannot be measured here: more than"));
   EXPECT_THAT(error_of("time,position\n0,1\n5e-12,2\n1e-11,3\n"), HasSubstr("rows 5e-12 s apart, closer than"));
   EXPECT_THAT(error_of("time,position\n0,1\n1e6,2\n"), HasSubstr("1e+06 s long, more than the 604800 s"));
   const Result<Recording> tiny = read_recording(write("tiny.csv", "time,position\n0,5e-324\n1,2\n"), test_plant());

@@ -85,11 +85,11 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Refused{"mpa", "Pa", "did you mean 'MPa'?"},
         Refused{"mm", "Pa", "cannot be converted to Pa; units of this channel: Pa"},
-        Refused{"%", "W", "is a share and no W; in the map: unit: W, and as scale what 1 % is"},
+        Refused{"%", "W", "is a share, not W; in the map: unit: W, and as scale what 1 % is"},
         Refused{"Hz", "rad/s", "cannot be converted to rad/s"},
         Refused{"1/s", "rad/s", "cannot be converted to rad/s; where it counts revolutions: rev/min (rpm) or rev/s"},
         Refused{"1/min", "rad", "cannot be converted to rad"},
-        Refused{"counts", "m", "are a plain number and no m; in the map: unit: m, scale: what one count is"},
+        Refused{"counts", "m", "are a plain number, not m; in the map: unit: m, scale: what one count is"},
         Refused{"furlong/x", "m", "is not a known unit; units of this channel: m, mm"},
         Refused{"kPaa", "m", "cannot be converted to m"}, Refused{"Hz", "s", "cannot be converted to s"},
         Refused{"rad", "1", "cannot be converted to 1"}, Refused{"nonsense", "m", "is not a known unit"},

@@ -37,7 +37,7 @@ class Rewriter {
     pugi::xml_document document;
     if (!document.load_buffer(text.data(), text.size(), pugi::parse_full))
       return fail(
-          Error{.file = inner_.name(), .place = kDescriptionName, .value = {}, .rule = "is no XML", .advice = {}});
+          Error{.file = inner_.name(), .place = kDescriptionName, .value = {}, .rule = "is not XML", .advice = {}});
     root_ = document.child("fmiModelDescription");
     for (xml_node& node : variables_of(root_)) variables_.push_back(node);
     for (const xml_node& node : variables_) {

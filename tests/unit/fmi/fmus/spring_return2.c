@@ -1,8 +1,9 @@
-/* With directional derivatives, which LIE makes wrong: it forgets the friction. LIE_BY_INPUT, LIE_OF_OUTPUT, LIE_OF_OUTPUT_BY_INPUT: wrong there. OF_STATES_ALONE: none of outputs.
+/* With directional derivatives, which LIE makes wrong: it forgets the friction. LIE_BY_INPUT, LIE_OF_OUTPUT, LIE_OF_OUTPUT_BY_INPUT: wrong there. LIE_BEYOND: by this variable wrong where x is above 0.012. OF_STATES_ALONE: none of outputs.
  * ONE_SIDED: its drive gives nothing backwards, which its derivatives say.
  * STEADY: its initial equation is that it rests, wherever its input holds it.
  * STUBBORN: hangs at other
- * parameters. SLOW_TO_REFUSE: refuses them, after 0.2 s. FORKS: starts a process that stays. MUTTERS: prints why it gives no instance. BREAKS: it fails over them, and the instance gives nothing after that. ONCE: one instance in a process's life. */
+ * parameters. SLOW_TO_REFUSE: refuses them, after 0.2 s. FORKS: starts a process that stays. MUTTERS: prints why it gives no instance. BREAKS: it fails over them, and the instance gives nothing after that. ONCE: one instance in a process's life. TALKS: prints, logs and warns at
+ * each call. */
 #include <stddef.h>
 #include "spring_return.h"
 #ifdef DIRECTIONAL
@@ -45,6 +46,12 @@ static volatile int for_ever = 1;
 #ifdef BREAKS
 #define fmi2GetDerivatives sound_derivatives
 #endif
+#ifdef TALKS
+#include <stdio.h>
+static const void* heard_by;
+#define MODEL_BEFORE_INSTANTIATE(callbacks) heard_by = callbacks;
+#define fmi2GetDerivatives sound_derivatives
+#endif
 #if defined(STEADY) || defined(STUBBORN) || defined(SLOW_TO_REFUSE)
 #define fmi2ExitInitializationMode plain_exit
 #endif
@@ -61,6 +68,15 @@ API int fmi2ExitInitializationMode(void* c) {
 #endif
   usleep(200000);
   return kError;
+}
+#endif
+#ifdef TALKS
+#undef fmi2GetDerivatives
+API int fmi2GetDerivatives(void* c, double* x, size_t n) {
+  const Callbacks* to = heard_by;
+  printf("LOG_NLS | info | nonlinear system 12 at time %g\n", ((Model*)c)->time);
+  to->logger(to->environment, "unit", 1, "logStatusWarning", "residual %g in %s", 1e-9, "nonlinear system 12");
+  return sound_derivatives(c, x, n) == kOk ? 1 : kError;
 }
 #endif
 #ifdef STEADY
@@ -108,6 +124,9 @@ API int fmi2GetDirectionalDerivative(void* c, const unsigned* unknowns, size_t n
 #endif
     sensitivity[row] = 0.0;
     for (column = 0; column < nk; ++column) {
+#ifdef LIE_BEYOND
+      if (unknowns[row] == 2001U && knowns[column] == LIE_BEYOND && ((Model*)c)->x[0] > 0.012) continue;
+#endif
 #ifdef ONE_SIDED
       if (unknowns[row] != 5000U && unknowns[row] != 2000U && knowns[column] != 1000U && knowns[column] != 1001U &&
           ((Model*)c)->u[0] <= 0.0)

@@ -9,24 +9,23 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "sealwatch/config/asset.hpp"
-#include "sealwatch/core/recording.hpp"
 #include "sealwatch/core/time_series.hpp"
-#include "sealwatch/model/plant_description.hpp"
 
-namespace sealwatch::cli {
+namespace sealwatch {
 
 struct Runaway {
   std::string channel;
   double decades = 0.0;  ///< by which an error in its start grows over the test
 };
 
-/// The output that runs away most; nothing where none does or no piece can be simulated, which is told elsewhere.
+/// The output that runs away most, of a plant that came as a file; nothing where none does or no piece can be simulated,
+/// which is told elsewhere.
 [[nodiscard]] std::optional<Runaway> find_runaway(const AssetConfig& asset, const TimeSeries& recorded);
 
-/// Warns on standard error where the first recording's simulation runs away, of a plant that came as a file.
-void tell_runaway(const std::vector<Recording>& recordings, const AssetConfig& asset, const PlantDescription& plant);
+/// What it means for whoever simulates it over a whole test, and what to do, in two sentences.
+[[nodiscard]] std::string in_words(const Runaway& runaway);
+[[nodiscard]] std::string advice_for_runaway();
 
-}  // namespace sealwatch::cli
+}  // namespace sealwatch

@@ -1,21 +1,22 @@
-#include "services/cli/runaway.hpp"
+#include "services/common/estimation/runaway.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
+#include "sealwatch/model/plant_description.hpp"
 #include "sealwatch/model/simulation.hpp"
 #include "services/common/estimation/rows_of.hpp"
 
-namespace sealwatch::cli {
+namespace sealwatch {
 namespace {
 
-constexpr double kTold = 4.0;  // decades: a start that is known to a ten-thousandth of the signal tells nothing then
-constexpr std::size_t kFewestSamples = 10;
+constexpr double kRunsAway =
+    4.0;  // decades: a start that is known to a ten-thousandth of the signal tells nothing then
+constexpr std::size_t kFewestInPiece = 10;
 
 /// Of each output that shows one state alone, the decades by which an error in that state's start has grown by the end.
-std::map<std::string, double> growth_in(const AssetConfig& asset, const TimeSeries& piece) {
+std::map<std::string, double> grown_over(const AssetConfig& asset, const TimeSeries& piece) {
   std::map<std::string, double> decades;
   const auto simulation = PlantSimulation::create(asset, piece);
   if (!simulation) return decades;
@@ -39,13 +40,15 @@ std::map<std::string, double> growth_in(const AssetConfig& asset, const TimeSeri
 }  // namespace
 
 std::optional<Runaway> find_runaway(const AssetConfig& asset, const TimeSeries& recorded) {
+  const auto plant = find_plant(asset.model);
+  if (!plant || (*plant)->file.empty()) return std::nullopt;
   std::map<std::string, double> least;
   for (const std::size_t pieces : {20, 10}) {  // what grows in pieces of one length alone does not run away
     const std::size_t count = recorded.time_s.size() / pieces;
-    if (count < kFewestSamples) return std::nullopt;
+    if (count < kFewestInPiece) return std::nullopt;
     std::map<std::string, double> decades;
     for (std::size_t piece = 0; piece < pieces; ++piece)
-      for (const auto& [channel, grown] : growth_in(asset, rows_of(recorded, piece * count, (piece + 1) * count)))
+      for (const auto& [channel, grown] : grown_over(asset, rows_of(recorded, piece * count, (piece + 1) * count)))
         decades[channel] += grown;
     for (const auto& [channel, grown] : decades) {
       const auto known = least.try_emplace(channel, grown).first;
@@ -54,20 +57,19 @@ std::optional<Runaway> find_runaway(const AssetConfig& asset, const TimeSeries& 
   }
   std::optional<Runaway> most;
   for (const auto& [channel, grown] : least)
-    if (grown > kTold && (!most || grown > most->decades)) most = {channel, grown};
+    if (grown > kRunsAway && (!most || grown > most->decades)) most = {channel, grown};
   return most;
 }
 
-void tell_runaway(const std::vector<Recording>& recordings, const AssetConfig& asset, const PlantDescription& plant) {
-  if (plant.file.empty() || recordings.empty()) return;
-  const std::optional<Runaway> found = find_runaway(asset, recordings.front().samples);
-  if (!found) return;
-  std::fprintf(stderr,
-               "sealwatch: warning: %s: the simulated plant runs away by itself: an error in the start of %s grows "
-               "10^%.0f-fold over the test. No simulation over the whole test can follow the machine, and what differs "
-               "says little of it: use shorter tests, or put what holds the machine, such as its controller, into the "
-               "plant's equations\n",
-               recordings.front().file.c_str(), found->channel.c_str(), found->decades);
+std::string in_words(const Runaway& runaway) {
+  return "The simulated plant runs away by itself: an error in the start of " + runaway.channel + " grows 10^" +
+         std::to_string(std::lround(runaway.decades)) +
+         "-fold over the test. No simulation over the whole test can follow the machine, and what differs says little "
+         "of it.";
 }
 
-}  // namespace sealwatch::cli
+std::string advice_for_runaway() {
+  return "Use shorter tests, or put what holds the machine, such as its controller, into the plant's equations.";
+}
+
+}  // namespace sealwatch

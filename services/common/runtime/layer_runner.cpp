@@ -256,6 +256,7 @@ std::optional<std::string> LayerRunner::refusal_of(const Message& message, const
 }
 
 Status LayerRunner::take(Message message, const ActRecord* record) {
+  const bool is_false = is_false_record(message);
   if (Status named = name_as_kept(message); !named) return named;
   const Header& header = header_of(message);
   StreamPosition stream;
@@ -270,6 +271,7 @@ Status LayerRunner::take(Message message, const ActRecord* record) {
     note_unknown_asset(message, *refused);
     return {};
   }
+  if (is_false) return {};
   if (Status recalled = recall(asset_of(message)); !recalled) return recalled;
   const auto id = identify_input(message);
   if (!id) return fail(id.error());

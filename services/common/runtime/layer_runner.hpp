@@ -269,6 +269,8 @@ class LayerRunner {
   [[nodiscard]] Status name_tests_known(MaintenanceEvent& event, UtcTime at);
   /// Of a neighbour: the act in it is taken where it is not known here.
   [[nodiscard]] Status take_record(Message message, const StreamPosition& stream);
+  /// Says so where it is one.
+  [[nodiscard]] bool is_false_record(const Message& message);
   void put_in_line(Message message);
   /// Puts those into line whose act has come, or does not come.
   [[nodiscard]] Status release_records();

@@ -149,6 +149,7 @@ class LayerRunner {
   [[nodiscard]] Status take(Message message, const ActRecord* record = nullptr);
   /// Why it is not taken; none for nearly all.
   [[nodiscard]] std::optional<std::string> refusal_of(const Message& message, const ActRecord* record) const;
+  [[nodiscard]] std::optional<std::string> refusal_of_content(const Message& message) const;
   [[nodiscard]] Result<std::optional<std::string>> identify_input(const Message& message);
   /// Gives the lanes a moment to conclude from what was taken.
   [[nodiscard]] Result<std::optional<Message>> input(const std::string& message_id);

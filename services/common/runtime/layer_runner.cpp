@@ -249,7 +249,8 @@ Status LayerRunner::name_as_kept(Message& message) {
 
 /// Whoever says the same again is refused again.
 std::optional<std::string> LayerRunner::refusal_of_content(const Message& message) const {
-  return admission_.refusal(message, clock_.now());
+  auto refused = admission_.refusal(message, clock_.now());
+  return refused ? refused : refusal_of_nameless(message);
 }
 
 std::optional<std::string> LayerRunner::refusal_of(const Message& message, const ActRecord* record) const {

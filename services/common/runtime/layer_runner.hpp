@@ -150,6 +150,7 @@ class LayerRunner {
   /// Why it is not taken; none for nearly all.
   [[nodiscard]] std::optional<std::string> refusal_of(const Message& message, const ActRecord* record) const;
   [[nodiscard]] std::optional<std::string> refusal_of_content(const Message& message) const;
+  [[nodiscard]] static std::optional<std::string> refusal_of_nameless(const Message& message);
   [[nodiscard]] Result<std::optional<std::string>> identify_input(const Message& message);
   /// Gives the lanes a moment to conclude from what was taken.
   [[nodiscard]] Result<std::optional<Message>> input(const std::string& message_id);

@@ -236,6 +236,7 @@ class LayerRunner {
   /// In the running batch: what became of those.
   [[nodiscard]] Status answer_recalled();
   [[nodiscard]] Status keep_alarms();
+  [[nodiscard]] Status keep_over();
   [[nodiscard]] Status let_time_pass_at_desk();
 
   // What people say (layer_runner_acts.cpp).

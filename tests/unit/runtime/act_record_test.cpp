@@ -737,5 +737,70 @@ TEST_F(AlarmActRecordTest, WhatTheDeskRefusedIsNotFetchedBack) {
   EXPECT_THAT(outcomes(none), IsEmpty());
 }
 
+/// Since when a service is silent, only the desk knows, and it has lost its journal.
+class SilenceRecordTest : public AlarmActRecordTest {
+ protected:
+  SilenceRecordTest() {
+    options_.desk->services = {"data_acquisition"};  // on a busy machine the others fall silent, too
+    options_.strangers.services.emplace_back("data_acquisition");
+    options_.longest_without_acts = std::chrono::seconds(1);
+    options_.desk->silence = std::chrono::milliseconds(100);
+    told_.clear();
+  }
+  void SetUp() override {
+    ActRecordTest::SetUp();
+    ASSERT_TRUE(become({": " + kSilent + " unacknowledged"}));
+  }
+  Message seen_silence() {
+    Message said = seen(kSilent);
+    std::get<Acknowledgement>(said).asset_id.clear();
+    return said;
+  }
+  void lose_desk() {
+    lose(kDesk);
+    now_ = add_seconds(now_, 60.0);
+    start_all();
+    services_[kDesk].process->clock().set(now_);
+  }
+  void acquisition_beats() {
+    ServiceStatus status;
+    status.service = "data_acquisition";
+    status.writer_id = "data_acquisition-1";
+    EXPECT_TRUE(health_.publish(status));
+  }
+  const std::string kSilent = "no_heartbeat/data_acquisition";
+};
+
+TEST_F(SilenceRecordTest, ASilentServiceThatSomebodyHasSeenIsSeenAfterARestartAndTheLossOfTheJournal) {
+  tell(seen_silence());
+  const std::vector<std::string> before = {": " + kSilent + " acknowledged"};
+  ASSERT_TRUE(become(before));
+  stop(kDesk);
+  start_all();
+  for (int more = 0; more < 50; ++more) step();
+  EXPECT_EQ(states(), before);
+  lose_desk();
+  EXPECT_TRUE(become(before));
+}
+
+/// That it ran meanwhile nobody else could tell.
+TEST_F(SilenceRecordTest, ASilenceThatCameAfterTheOneThatSomebodySawIsUnseen) {
+  const std::string said = tell(seen_silence());
+  ASSERT_TRUE(become({": " + kSilent + " acknowledged"}));
+  EXPECT_TRUE(steps_until([&] {
+    acquisition_beats();
+    return states().empty();
+  }));
+  ASSERT_TRUE(become({": " + kSilent + " unacknowledged"}));
+  for (int more = 0; more < 100; ++more) step();
+  for (int k = 0; k < 2; ++k) {
+    lose_desk();
+    EXPECT_TRUE(become({": " + kSilent + " unacknowledged"}));
+    EXPECT_TRUE(steps_until([&] { return outcomes(said).size() == 2; }));
+    for (int more = 0; more < 100; ++more) step();
+    EXPECT_TRUE(become({": " + kSilent + " unacknowledged"})) << k;
+  }
+}
+
 }  // namespace
 }  // namespace sealwatch::testing

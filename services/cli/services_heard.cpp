@@ -14,6 +14,23 @@ void ServicesHeard::take(const ServiceStatus& status, Clock::time_point now) {
   heard.processes.insert(status.process_id);
 }
 
+void ServicesHeard::take(const Message& message) {
+  if (std::ranges::find(conclusions_, topic_of(message)) == conclusions_.end()) return;
+  come_.emplace(header_of(message).writer_id, name_of(topic_of(message)));
+}
+
+bool ServicesHeard::awaits_conclusions() const {
+  const auto is_to_come = [this](const StreamPosition& written) {
+    const auto topic = value_of<Topic>(written.topic);
+    return topic && std::ranges::find(conclusions_, *topic) != conclusions_.end() && written.sequence > 0 &&
+           !come_.contains({written.writer_id, written.topic});
+  };
+  return std::ranges::any_of(heard_, [&](const auto& one) {
+    const ServiceStatus& last = one.second.last;
+    return std::ranges::find(expected_, one.first) != expected_.end() && std::ranges::any_of(last.written, is_to_come);
+  });
+}
+
 ServicesHeard::Service ServicesHeard::service(const std::string& name, Clock::time_point now) const {
   Service service;
   service.name = name;

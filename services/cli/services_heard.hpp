@@ -6,9 +6,11 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sealwatch/message/service.hpp"
+#include "sealwatch/message/topics.hpp"
 
 namespace sealwatch::cli {
 
@@ -26,8 +28,11 @@ class ServicesHeard {
     std::string trouble;  ///< "no heartbeat", ...; "" when all is well
   };
 
-  explicit ServicesHeard(std::vector<std::string> expected) : expected_(std::move(expected)) {}
+  /// `conclusions` are the topics of which the last word on each asset is listened for.
+  explicit ServicesHeard(std::vector<std::string> expected, std::vector<Topic> conclusions = {})
+      : expected_(std::move(expected)), conclusions_(std::move(conclusions)) {}
   void take(const ServiceStatus& status, Clock::time_point now);
+  void take(const Message& message);
   /// The expected services in their order, then others that were heard.
   [[nodiscard]] std::vector<Service> list(Clock::time_point now) const;
   /// Whether every expected service is well.
@@ -35,6 +40,8 @@ class ServicesHeard {
   [[nodiscard]] bool none() const { return heard_.empty(); }
   /// Whether some services are heard and an expected one is not: just started, or found last.
   [[nodiscard]] bool incomplete() const;
+  /// Whether a service that is heard has concluded something of which nothing has come: its last word is on its way.
+  [[nodiscard]] bool awaits_conclusions() const;
 
  private:
   struct Heard {
@@ -46,6 +53,8 @@ class ServicesHeard {
   [[nodiscard]] Service service(const std::string& name, Clock::time_point now) const;
 
   std::vector<std::string> expected_;
+  std::vector<Topic> conclusions_;
+  std::set<std::pair<std::string, std::string>> come_;  ///< writers and topics of which something has come
   std::map<std::string, Heard> heard_;
 };
 

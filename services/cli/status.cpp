@@ -24,6 +24,8 @@ constexpr std::array kStateTopics = {Topic::state_report,      Topic::health_rep
 
 /// Where some services are heard, the others are waited for so much longer: they may just be starting.
 constexpr std::chrono::seconds kPatienceForTheRest{3};
+/// What they have concluded is there, and comes: on a busy machine, late.
+constexpr std::chrono::seconds kPatienceForConclusions{15};
 
 UtcTime now() { return {now_ns()}; }
 
@@ -36,6 +38,7 @@ struct Heard {
   void take(const BusItem& item) {
     if (const auto* status = std::get_if<ServiceStatus>(&item)) services.take(*status, ServicesHeard::Clock::now());
     if (const auto* message = std::get_if<Message>(&item)) {
+      services.take(*message);
       assets[asset_of(*message)].take(*message);
       last[asset_of(*message)][std::string(name_of(topic_of(*message)))] = to_json(*message);
     }
@@ -123,11 +126,15 @@ int run_status(const StatusOptions& options) {
     return kInternalFailure;
   }
   catch_interrupts();
-  Heard heard{.services = ServicesHeard(enabled_services(session->configuration)), .assets = {}, .last = {}};
+  Heard heard{
+      .services = ServicesHeard(enabled_services(session->configuration), {kStateTopics.begin(), kStateTopics.end()}),
+      .assets = {},
+      .last = {}};
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(options.seconds);
   const auto go_on = [&] {
     const auto now = std::chrono::steady_clock::now();
-    return now < end || (heard.services.incomplete() && now < end + kPatienceForTheRest);
+    return now < end || (heard.services.incomplete() && now < end + kPatienceForTheRest) ||
+           (heard.services.awaits_conclusions() && now < end + kPatienceForConclusions);
   };
   while (!interrupted() && go_on())
     for (const BusItem& item : session->bus->receive(std::chrono::milliseconds(100))) heard.take(item);

@@ -212,6 +212,9 @@ std::string AssetView::screen(bool services_run) const {
   if (tested) text += ", last test " + date(life_->header.event_time_ns);
   if (tests == 0 && replaced_ns_ && !tested) text += ", no test since";
   if (tests > 0 || !replaced_ns_) text += ", " + count_of(tests, "test") + " shown";
+  const std::size_t used =
+      life_ && !life_->forecasts.empty() ? static_cast<std::size_t>(life_->forecasts.front().tests_used) : 0;
+  if (used > tests) text += ", " + std::to_string(used) + " usable in the forecast";
   text += "\n";
   return text + seal_lines() + history_chart() + forecast_lines() + advisory_lines(services_run) + model_lines() +
          left_out_lines();

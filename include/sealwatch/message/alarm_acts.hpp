@@ -9,9 +9,11 @@
 // <asset> is "" for an alarm about none.
 #pragma once
 
+#include <charconv>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include "sealwatch/core/time.hpp"
 #include "sealwatch/message/advisory_generation.hpp"
@@ -65,6 +67,27 @@ struct AlarmAct {
   if (!act_id.starts_with(begin)) return std::nullopt;
   const auto time = parse_utc(act_id.substr(begin.size(), act_id.find('/', begin.size()) - begin.size()));
   return time ? std::optional(*time) : std::nullopt;
+}
+
+/// What the desk itself keeps beside acknowledgements, in their form and by nobody: that the alarm was over. Its id:
+/// alarm_over/<alarm id>/<ns>
+struct AlarmOver {
+  std::string alarm_id;
+  UtcTime at;
+};
+
+[[nodiscard]] inline std::string alarm_over_id(const std::string& alarm_id, UtcTime at) {
+  return "alarm_over/" + alarm_id + "/" + std::to_string(at.nanoseconds);
+}
+
+[[nodiscard]] inline std::optional<AlarmOver> alarm_over_of(std::string_view act_id) {
+  constexpr std::string_view kBegin = "alarm_over/";
+  const std::size_t end = act_id.rfind('/');
+  if (!act_id.starts_with(kBegin) || end < kBegin.size()) return std::nullopt;
+  AlarmOver over{.alarm_id = std::string(act_id.substr(kBegin.size(), end - kBegin.size())), .at = {}};
+  const std::string_view time = act_id.substr(end + 1);
+  const auto read = std::from_chars(time.data(), time.data() + time.size(), over.at.nanoseconds);
+  return read.ec == std::errc() && read.ptr == time.data() + time.size() ? std::optional(over) : std::nullopt;
 }
 
 /// Whether what an acknowledgement names is an advisory; else it is an alarm, by alarm_id().

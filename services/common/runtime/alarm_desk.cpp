@@ -56,6 +56,17 @@ bool is_more_pressing(std::int64_t before_ns, std::int64_t now_ns) {
   return now_ns < before_ns;
 }
 
+Acknowledgement alarm_over(const ServiceAlarm& alarm, UtcTime at) {
+  Acknowledgement over;
+  over.asset_id = alarm.asset_id;
+  over.advisory_id = alarm_id(alarm);
+  over.remark = "the alarm is over";
+  over.header.message_id = alarm_over_id(over.advisory_id, at);
+  over.header.event_time_known = true;
+  over.header.event_time_ns = at.nanoseconds;
+  return over;
+}
+
 void take_off_shelf(AlarmEntry& entry) {
   entry.shelved_by.clear();
   entry.shelved_reason.clear();
@@ -126,10 +137,17 @@ void AlarmDesk::forget(const Key& key) {
   touched_.insert(key);
 }
 
+/// What was acknowledged, and was over when it was, or is now.
+void AlarmDesk::note_over(const AlarmEntry& kept, UtcTime time) {
+  if (kept.acknowledged_by.empty() || is_advice(kept.alarm)) return;
+  over_.push_back(alarm_over(kept.alarm, {std::max(time.nanoseconds, kept.acknowledged_at_ns)}));
+}
+
 void AlarmDesk::end(const Key& key, UtcTime time) {
   Entry& entry = entries_.at(key);
   entry.told_by.clear();
   touched_.insert(key);
+  note_over(entry.kept, time);
   const bool is_seen = !entry.kept.acknowledged_by.empty() || is_ended_by_act(entry.kept.alarm.kind);
   if (is_seen && entry.kept.shelved_until_ns <= time.nanoseconds) return forget(key);
   entry.kept.ended_ns = time.nanoseconds;
@@ -157,6 +175,7 @@ void AlarmDesk::hear(const ServiceStatus& status, Steady now, UtcTime time) {
   if (!is_expected && status.service != options_.service) return;
   if (is_expected) {
     heard_[status.service] = now;
+    heard_ever_.insert(status.service);
     const Key silent{kNoHeartbeat, "", status.service};
     if (const auto found = entries_.find(silent); found != entries_.end() && found->second.kept.ended_ns == 0)
       end(silent, time);
@@ -216,13 +235,14 @@ void AlarmDesk::look(Steady now, UtcTime time) {
     const auto found = entries_.find(key);
     const bool stands = found != entries_.end() && found->second.kept.ended_ns == 0;
     if (stands || service == options_.service || now - last <= options_.silence) continue;
+    const bool is_silent_since_before = !heard_ever_.contains(service);
     (void)raise(options_.service,
                 {.kind = kNoHeartbeat,
                  .asset_id = {},
                  .subject = service,
                  .pst_id = {},
-                 .text = "no heartbeat",
-                 .since_ns = time.nanoseconds},
+                 .text = is_silent_since_before ? "no heartbeat since before " + format_utc(time) : "no heartbeat",
+                 .since_ns = is_silent_since_before ? 0 : time.nanoseconds},
                 now);
   }
   end_shelves(time);
@@ -266,7 +286,19 @@ void AlarmDesk::acknowledge(const Acknowledgement& seen, UtcTime time) {
   kept.acknowledged_by = seen.acknowledged_by;
   kept.acknowledged_at_ns = seen.header.event_time_known ? seen.header.event_time_ns : time.nanoseconds;
   touched_.insert(key);
-  if (kept.ended_ns != 0 && kept.shelved_until_ns <= time.nanoseconds) forget(key);
+  if (kept.ended_ns == 0) return;
+  note_over(kept, time);
+  if (kept.shelved_until_ns <= time.nanoseconds) forget(key);
+}
+
+void AlarmDesk::take_back(const Acknowledgement& over) {
+  const auto found = find(over.asset_id, over.advisory_id);
+  if (found == entries_.end() || found->second.kept.acknowledged_at_ns > over.header.event_time_ns) return;
+  AlarmEntry& kept = found->second.kept;
+  if (kept.acknowledged_by.empty() || kept.ended_ns != 0) return;
+  kept.acknowledged_by.clear();
+  kept.acknowledged_at_ns = 0;
+  touched_.insert(found->first);
 }
 
 std::optional<std::string> AlarmDesk::apply(const MaintenanceEvent& event, UtcTime time) {

@@ -49,6 +49,8 @@ class AlarmDesk {
   /// Whether the acknowledgement is of an alarm here; one of an advisory in force is advisory generation's affair.
   [[nodiscard]] bool takes(const Acknowledgement& seen) const;
   void acknowledge(const Acknowledgement& seen, UtcTime time);
+  /// The alarm that was acknowledged is over: what stands under its name is another.
+  void take_back(const Acknowledgement& over);
   /// Does what the event says, or says why not.
   [[nodiscard]] std::optional<std::string> apply(const MaintenanceEvent& event, UtcTime time);
 
@@ -66,6 +68,8 @@ class AlarmDesk {
   [[nodiscard]] bool changed() const { return !touched_.empty(); }
   /// Since the last call.
   [[nodiscard]] Changes take_changes();
+  /// Since the last call, of the alarms that somebody had acknowledged: that they are over.
+  [[nodiscard]] std::vector<Acknowledgement> take_over() { return std::exchange(over_, {}); }
 
  private:
   using Key = std::tuple<std::string, std::string, std::string>;  ///< kind, asset, subject
@@ -77,6 +81,7 @@ class AlarmDesk {
 
   [[nodiscard]] Entry& raise(const std::string& service, const ServiceAlarm& alarm, Steady now);
   void end(const Key& key, UtcTime time);
+  void note_over(const AlarmEntry& kept, UtcTime time);
   void end_untold(const ServiceStatus& status, Steady now, UtcTime time);
   void end_shelves(UtcTime time);
   void forget(const Key& key);
@@ -91,7 +96,9 @@ class AlarmDesk {
   const Options options_;
   Entries entries_;
   std::set<Key> touched_;
+  std::vector<Acknowledgement> over_;
   std::map<std::string, Steady> heard_;  ///< the last heartbeat of each expected service
+  std::set<std::string> heard_ever_;     ///< of them, those that were heard since the start
   std::set<std::string> told_all_;       ///< of them, those that have told all alarms since the start
 };
 

@@ -38,6 +38,8 @@ void name_replacement(Message& message) {
   header_of(message).message_id = replacement_id_of(short_part(own), event->asset_id, event->kind, time);
 }
 
+std::string id_of_refused(const Message& act) { return "refused/" + content_hash(content_of(act)); }
+
 bool is_numbered(const Message& message) {
   const Header& header = header_of(message);
   return !header.writer_id.empty() && header.stream_sequence != 0;

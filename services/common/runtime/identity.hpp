@@ -10,6 +10,10 @@
 namespace sealwatch {
 
 /// Whether a message belongs to a numbered stream (message/service.hpp). Foreign senders' messages need not.
+/// Under which the journal keeps that an act was refused for what it says. Its own id stays free: what is corrected comes
+/// under the same, and so does what was truly said where somebody else has said it first.
+[[nodiscard]] std::string id_of_refused(const Message& act);
+
 [[nodiscard]] bool is_numbered(const Message& message);
 
 /// The message as a layer sees it: writer id, sequence and publishing time cleared, as they differ from run to run and

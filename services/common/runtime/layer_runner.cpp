@@ -10,6 +10,7 @@
 #include "services/common/runtime/confirmed_positions.hpp"
 #include "services/common/runtime/identity.hpp"
 #include "services/common/runtime/log.hpp"
+#include "services/common/runtime/operator_acts.hpp"
 #include "services/common/runtime/stream_window.hpp"
 
 namespace sealwatch {
@@ -246,9 +247,14 @@ Status LayerRunner::name_as_kept(Message& message) {
   return {};
 }
 
+/// Whoever says the same again is refused again.
+std::optional<std::string> LayerRunner::refusal_of_content(const Message& message) const {
+  auto refused = admission_.refusal(message, clock_.now());
+  return refused ? refused : refusal_of_nameless(message);
+}
+
 std::optional<std::string> LayerRunner::refusal_of(const Message& message, const ActRecord* record) const {
-  auto refused =
-      record == nullptr ? admission_.refusal(message, clock_.now()) : admission_.refusal_of_recorded(message);
+  auto refused = record == nullptr ? refusal_of_content(message) : admission_.refusal_of_recorded(message);
   if (!refused) refused = refusal_of_confirmation(message);
   if (!refused) refused = refusal_of_waiting(message);
   if (!refused && (record == nullptr || record->is_ahead)) refused = refusal_of_ahead(message);
@@ -256,6 +262,7 @@ std::optional<std::string> LayerRunner::refusal_of(const Message& message, const
 }
 
 Status LayerRunner::take(Message message, const ActRecord* record) {
+  const bool is_false = is_false_record(message);
   if (Status named = name_as_kept(message); !named) return named;
   const Header& header = header_of(message);
   StreamPosition stream;
@@ -270,6 +277,7 @@ Status LayerRunner::take(Message message, const ActRecord* record) {
     note_unknown_asset(message, *refused);
     return {};
   }
+  if (is_false) return {};
   if (Status recalled = recall(asset_of(message)); !recalled) return recalled;
   const auto id = identify_input(message);
   if (!id) return fail(id.error());
@@ -279,11 +287,18 @@ Status LayerRunner::take(Message message, const ActRecord* record) {
   }
   header_of(message).message_id = **id;
   if (topic_of(message) == Topic::act_record) return take_record(std::move(message), stream);
+  const std::string id_if_refused = record == nullptr && is_an_act(message) ? id_of_refused(message) : std::string();
   if (record == nullptr)
     name_tests(message);
   else if (const auto* event = std::get_if<MaintenanceEvent>(&message))
     admission_.note_named_tests(*event);
   auto refused = refusal_of(message, record);
+  const bool keeps_id_free = refused && !id_if_refused.empty() && refusal_of_content(message);
+  if (keeps_id_free) {
+    const auto is_known = taken_ids_.contains(id_if_refused) ? Result<bool>(true) : journal_.has_input(id_if_refused);
+    if (!is_known) return fail(is_known.error());
+    if (*is_known) return {};
+  }
   if (refused) {
     note_error(std::string(name_of(topic_of(message))) + " refused: " + *refused);
     log_message(LogLevel::warn, "refused", message, {{"reason", *refused}});
@@ -309,8 +324,10 @@ Status LayerRunner::take(Message message, const ActRecord* record) {
   if (!refused && is_to_be_kept(message, for_desk)) keep_record(message, !for_desk && state == InputState::ahead);
   if (state == InputState::open && has_no_samples_any_more(message)) state = InputState::consumed;
   const std::string asset_id = asset_of(message);
-  taken_ids_[**id] = taken_.size();
-  if (stream.sequence == 0) last_unnumbered_[{topic_of(message), asset_id}] = **id;
+  if (keeps_id_free) header_of(message).message_id = id_if_refused;
+  const std::string kept_id = header_of(message).message_id;
+  taken_ids_[kept_id] = taken_.size();
+  if (stream.sequence == 0) last_unnumbered_[{topic_of(message), asset_id}] = kept_id;
   const auto input = std::make_shared<const Message>(without_stamps(std::move(message)));
   taken_.push_back({input, stream, state});
   if (state == InputState::awaiting) await(input, clock_.now());

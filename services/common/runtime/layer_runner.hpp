@@ -149,6 +149,8 @@ class LayerRunner {
   [[nodiscard]] Status take(Message message, const ActRecord* record = nullptr);
   /// Why it is not taken; none for nearly all.
   [[nodiscard]] std::optional<std::string> refusal_of(const Message& message, const ActRecord* record) const;
+  [[nodiscard]] std::optional<std::string> refusal_of_content(const Message& message) const;
+  [[nodiscard]] static std::optional<std::string> refusal_of_nameless(const Message& message);
   [[nodiscard]] Result<std::optional<std::string>> identify_input(const Message& message);
   /// Gives the lanes a moment to conclude from what was taken.
   [[nodiscard]] Result<std::optional<Message>> input(const std::string& message_id);
@@ -234,6 +236,7 @@ class LayerRunner {
   /// In the running batch: what became of those.
   [[nodiscard]] Status answer_recalled();
   [[nodiscard]] Status keep_alarms();
+  [[nodiscard]] Status keep_over();
   [[nodiscard]] Status let_time_pass_at_desk();
 
   // What people say (layer_runner_acts.cpp).
@@ -269,6 +272,8 @@ class LayerRunner {
   [[nodiscard]] Status name_tests_known(MaintenanceEvent& event, UtcTime at);
   /// Of a neighbour: the act in it is taken where it is not known here.
   [[nodiscard]] Status take_record(Message message, const StreamPosition& stream);
+  /// Says so where it is one.
+  [[nodiscard]] bool is_false_record(const Message& message);
   void put_in_line(Message message);
   /// Puts those into line whose act has come, or does not come.
   [[nodiscard]] Status release_records();

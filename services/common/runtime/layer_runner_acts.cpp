@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "sealwatch/core/visible_text.hpp"
+#include "sealwatch/message/alarm_acts.hpp"
 #include "sealwatch/message/confirmation.hpp"
 #include "services/common/runtime/layer_runner.hpp"
 #include "services/common/runtime/log.hpp"
@@ -108,6 +109,15 @@ std::optional<std::string> LayerRunner::refusal_of_confirmation(const Message& m
   if (!rejects(message) && plain(who_said(message)) == plain(who_said(*waiting->second)))
     return who_said(message) + " said so in the first place; it takes another person to confirm it";
   return std::nullopt;
+}
+
+/// What says that somebody has seen something, or sets it aside, says nothing where it does not say who.
+std::optional<std::string> LayerRunner::refusal_of_nameless(const Message& message) {
+  const auto* event = std::get_if<MaintenanceEvent>(&message);
+  const bool needs_a_name =
+      std::holds_alternative<Acknowledgement>(message) || (event != nullptr && is_alarm_act(event->kind));
+  if (!needs_a_name || !plain(who_said(message)).empty()) return std::nullopt;
+  return "it does not say who; give a name";
 }
 
 bool LayerRunner::waits_for_second(const Message& message) const {

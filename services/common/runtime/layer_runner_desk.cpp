@@ -1,6 +1,7 @@
 // The runner's part in the states of alarms (alarm_desk.hpp), where its service keeps them: what the desk hears, what
 // people say to it, and its place in the journal.
 #include <iterator>
+#include <utility>
 
 #include "services/common/runtime/layer_runner.hpp"
 #include "services/common/runtime/log.hpp"
@@ -29,9 +30,11 @@ Status LayerRunner::open_desk() {
 Status LayerRunner::restore_recalled_at_desk() {
   const auto acts = journal_.acts();
   if (!acts) return fail(acts.error());
-  for (const AuditEntry& entry : *acts)
+  for (const AuditEntry& entry : *acts) {
     if (is_taken(entry.act.outcome) || takes_back(entry.act.kind))
       recalled_.note_said(entry.act.kind, entry.act.asset_id, entry.act.subject);
+    if (entry.act.who.empty()) recalled_.note_over(entry.act.asset_id, entry.act.subject);
+  }
   for (auto ahead = acts_ahead_.begin(); ahead != acts_ahead_.end();) {
     const auto ids = journal_.acts_ahead(ahead->first);
     if (!ids) return fail(ids.error());
@@ -95,6 +98,15 @@ Status LayerRunner::answer_recalled() {
   return {};
 }
 
+/// An acknowledgement ends with its alarm: who has it back must know that it did.
+Status LayerRunner::keep_over() {
+  for (const Acknowledgement& over : desk_->take_over()) {
+    keep_record(over, false);
+    if (Status known = journal_.add_input(over, {}, clock_.now(), InputState::consumed); !known) return known;
+  }
+  return records_.empty() ? Status() : keep({.outputs = std::exchange(records_, {}), .consumed = {}});
+}
+
 /// In the batch that is being written: with what the entries follow from.
 Status LayerRunner::keep_alarms() {
   if (!desk_) return {};
@@ -105,6 +117,7 @@ Status LayerRunner::keep_alarms() {
     if (Status kept = journal_.keep_alarm(entry); !kept) return kept;
   for (const ServiceAlarm& alarm : changes.forgotten)
     if (Status forgotten = journal_.forget_alarm(alarm); !forgotten) return forgotten;
+  if (Status kept = keep_over(); !kept) return kept;
   desk_->tell(told_at_desk_, clock_.now());
   return {};
 }

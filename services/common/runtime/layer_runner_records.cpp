@@ -56,6 +56,19 @@ std::optional<Message> act_in(const ActRecord& record) {
   return std::nullopt;
 }
 
+/// Whether its journal is damaged there, or this version cannot read it: a true one that will come again.
+bool is_lost_on_the_way(const ActRecord& record) {
+  const std::string& id = record.header.message_id;
+  return id.starts_with(kDamagedMessage) || id.starts_with(kUnreadableMessage);
+}
+
+/// An act, under the id that any service gives to its record of it: under another it would keep a true record out.
+bool is_record_of_an_act(const ActRecord& record) {
+  const auto act = act_in(record);
+  return act && asset_of(*act) == record.asset_id && !header_of(*act).message_id.empty() &&
+         record.header.message_id == record_of(*act, record.header.producer, record.is_ahead).header.message_id;
+}
+
 /// As it came, as far as the audit trail tells it; nothing for what is not known any more.
 std::optional<Message> act_of_trail(const OperatorAct& act) {
   if (act.kind == name_of(Topic::acknowledgement)) {
@@ -179,6 +192,18 @@ Status LayerRunner::take_record(Message message, const StreamPosition& stream) {
   // It may have heard the act itself, but not whether the desk took it: this says so.
   if (!admission_.refusal_of_asset(*act) && !refusal_of(*act, &record)) keep_record(*act, false);
   return {};
+}
+
+/// Of what no service writes the journal keeps no id: whoever sends it sends as much as can be.
+bool LayerRunner::is_false_record(const Message& message) {
+  const auto* const record = std::get_if<ActRecord>(&message);
+  if (record == nullptr || is_lost_on_the_way(*record)) return false;
+  const auto refused = is_record_of_an_act(*record) ? admission_.refusal(message, clock_.now())
+                                                    : "its id, or its asset, is not that of a record of its act";
+  if (!refused) return false;
+  const std::string subject = "act_record/" + record->header.writer_id;
+  note_strangers({{subject.substr(0, kLongestId), "it writes records of acts that no service writes: " + *refused}});
+  return true;
 }
 
 void LayerRunner::put_in_line(Message message) {

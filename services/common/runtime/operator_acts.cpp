@@ -4,6 +4,11 @@
 
 namespace sealwatch {
 
+bool is_an_act(const Message& message) {
+  return std::holds_alternative<Acknowledgement>(message) || std::holds_alternative<MaintenanceEvent>(message) ||
+         std::holds_alternative<ModelAcceptance>(message);
+}
+
 std::optional<OperatorAct> act_of(const Message& message, UtcTime received, std::string outcome) {
   OperatorAct act{.at = received,
                   .kind = std::string(name_of(topic_of(message))),

@@ -10,6 +10,8 @@
 
 namespace sealwatch {
 
+[[nodiscard]] bool is_an_act(const Message& message);
+
 /// Nothing for what no person said.
 [[nodiscard]] std::optional<OperatorAct> act_of(const Message& message, UtcTime received, std::string outcome);
 

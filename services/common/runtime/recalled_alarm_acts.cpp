@@ -31,6 +31,13 @@ bool is_decided(const Acknowledgement& seen, AlarmDesk& desk, UtcTime time, std:
 
 }  // namespace
 
+void RecalledAlarmActs::note_over(const std::string& asset_id, const std::string& act_id) {
+  const auto over = alarm_over_of(act_id);
+  if (!over) return;
+  UtcTime& last = last_over_.try_emplace({asset_id, over->alarm_id}, over->at).first->second;
+  last = std::max(last, over->at);
+}
+
 void RecalledAlarmActs::note_said(std::string_view kind, const std::string& asset_id, const std::string& act_id) {
   MaintenanceEvent event;
   event.asset_id = asset_id;
@@ -46,6 +53,8 @@ void RecalledAlarmActs::note_said(std::string_view kind, const std::string& asse
 void RecalledAlarmActs::add(Message act) {
   if (const auto* event = std::get_if<MaintenanceEvent>(&act))
     note_said(event->kind, event->asset_id, event->header.message_id);
+  if (const auto* seen = std::get_if<Acknowledgement>(&act); seen && seen->acknowledged_by.empty())
+    note_over(seen->asset_id, seen->header.message_id);
   const auto place = std::ranges::upper_bound(waiting_, time_said(act), {}, time_said);
   waiting_.insert(place, std::move(act));
 }
@@ -61,9 +70,22 @@ void RecalledAlarmActs::decide(AlarmDesk& desk, UtcTime time) {
 
 bool RecalledAlarmActs::is_decided(const Message& act, AlarmDesk& desk, UtcTime time,
                                    std::optional<std::string>& why_not) const {
-  if (const auto* seen = std::get_if<Acknowledgement>(&act)) return sealwatch::is_decided(*seen, desk, time, why_not);
+  if (const auto* seen = std::get_if<Acknowledgement>(&act)) return is_decided(*seen, desk, time, why_not);
   const auto* const event = std::get_if<MaintenanceEvent>(&act);
   return event == nullptr || is_decided(*event, desk, time, why_not);
+}
+
+bool RecalledAlarmActs::is_decided(const Acknowledgement& seen, AlarmDesk& desk, UtcTime time,
+                                   std::optional<std::string>& why_not) const {
+  if (seen.acknowledged_by.empty()) {  // the desk itself said it
+    if (alarm_over_of(seen.header.message_id)) desk.take_back(seen);
+    return true;
+  }
+  const auto over = last_over_.find({seen.asset_id, seen.advisory_id});
+  if (over == last_over_.end() || seen.header.event_time_ns > over->second.nanoseconds)
+    return sealwatch::is_decided(seen, desk, time, why_not);
+  why_not = "its alarm was over at " + format_utc(over->second);
+  return true;
 }
 
 bool RecalledAlarmActs::is_decided(const MaintenanceEvent& event, AlarmDesk& desk, UtcTime time,

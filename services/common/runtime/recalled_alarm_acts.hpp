@@ -1,7 +1,8 @@
 // Acts on alarms that were fetched back from a neighbour (layer_runner_records.cpp): each counts for what it was said of,
 // once the desk knows that, whatever order they come in.
 //
-//   acknowledged             of the alarm that stands, where that began before it; of none that came later
+//   acknowledged             of the alarm that stands, where that began before it; of none that came later. Since when a
+//                            service is silent nobody may know any more: hence the desk keeps also that an alarm was over
 //   shelved, unshelved       the last said of each alarm; a shelf waits for its alarm, which may come again, to its end
 //   out of and in service    the last said of each asset
 #pragma once
@@ -31,6 +32,8 @@ class RecalledAlarmActs {
 
   /// Of an act that the desk was told, by its id: what was said before it of the same counts no more.
   void note_said(std::string_view kind, const std::string& asset_id, const std::string& act_id);
+  /// Of what the desk itself kept: that an alarm was over.
+  void note_over(const std::string& asset_id, const std::string& act_id);
   [[nodiscard]] bool is_full() const { return waiting_.size() >= kMostWaiting; }
   void add(Message act);
   /// Has the desk do what it can now.
@@ -44,11 +47,14 @@ class RecalledAlarmActs {
   /// Whether it waits no longer; why it counts for nothing, if so, in `why_not`.
   [[nodiscard]] bool is_decided(const Message& act, AlarmDesk& desk, UtcTime time,
                                 std::optional<std::string>& why_not) const;
+  [[nodiscard]] bool is_decided(const Acknowledgement& seen, AlarmDesk& desk, UtcTime time,
+                                std::optional<std::string>& why_not) const;
   [[nodiscard]] bool is_decided(const MaintenanceEvent& event, AlarmDesk& desk, UtcTime time,
                                 std::optional<std::string>& why_not) const;
 
   std::map<Subject, UtcTime> last_said_;
-  std::vector<Message> waiting_;  ///< in the order of what they say of their time
+  std::map<Subject, UtcTime> last_over_;  ///< when an alarm that was acknowledged was over
+  std::vector<Message> waiting_;          ///< in the order of what they say of their time
   std::vector<Decided> decided_;
 };
 

@@ -47,6 +47,26 @@ TEST_F(Listening, KnowsThatOthersMayStillBeFound) {
   EXPECT_FALSE(heard_.incomplete());
 }
 
+/// On a busy machine a heartbeat comes before what the service has concluded.
+TEST_F(Listening, KnowsThatWhatAServiceHasConcludedIsStillToCome) {
+  ServicesHeard heard({"health_assessment"}, {Topic::health_report});
+  ServiceStatus status = beat("health_assessment", 8);
+  status.writer_id = "health_assessment-1";
+  status.written = {{"health_report", status.writer_id, 0}, {"act_record", status.writer_id, 3}};
+  heard.take(status, now_);
+  EXPECT_FALSE(heard.awaits_conclusions()) << "it has concluded nothing";
+  status.written[0].sequence = 2;
+  heard.take(status, now_);
+  EXPECT_TRUE(heard.awaits_conclusions());
+  HealthReport report;
+  report.header.writer_id = "somebody else";
+  heard.take(Message(report));
+  EXPECT_TRUE(heard.awaits_conclusions());
+  report.header.writer_id = status.writer_id;
+  heard.take(Message(report));
+  EXPECT_FALSE(heard.awaits_conclusions());
+}
+
 TEST_F(Listening, NamesAServiceThatFallsSilent) {
   heard_.take(beat("data_acquisition", 7), now_);
   heard_.take(beat("health_assessment", 8), now_ - milliseconds(4000));

@@ -191,6 +191,19 @@ TEST(AssetView, DoesNotSayNoTestSinceBesideALastTest) {
   EXPECT_THAT(view.screen(), HasSubstr("last test 2018-02-13, 1 test shown\n"));
 }
 
+/// Who asks for the status hears the last test alone, and the forecast is of them all.
+TEST(AssetView, SaysWhichTestsItCounts) {
+  RemainingLife life = life_of("2018-02-13");
+  life.forecasts.at(0).tests_used = 8;
+  AssetView view;
+  view.take(Message(life));
+  view.take(Message(used_estimate("2018-02-13", 0.9)));
+  EXPECT_THAT(view.screen(), HasSubstr("last test 2018-02-13, 1 test shown, 8 usable in the forecast\n"));
+  life.forecasts[0].tests_used = 1;
+  view.take(Message(life));
+  EXPECT_THAT(view.screen(), HasSubstr("last test 2018-02-13, 1 test shown\n"));
+}
+
 TEST(AssetView, DrawsTheFailureLimitOnlyWhereItIsKnown) {
   RemainingLife life = life_of("2031-03-12");
   AssetView with;

@@ -510,6 +510,82 @@ TEST_F(ActRecordTest, AFloodOfInventedOnesKeepsNoRealOneOut) {
   EXPECT_THAT(counted("prognostic_assessment"), ElementsAre("a", "before"));
 }
 
+/// Somebody under the name of a service sends records before the true ones, under the same ids.
+class ForgedRecordTest : public ActRecordTest {
+ protected:
+  void forge(const std::string& id, const std::vector<MaintenanceEvent>& events) {
+    ActRecord record;
+    record.asset_id = "A";
+    record.header = header(id, "");
+    record.header.producer = "health_assessment";
+    record.header.writer_id = "health_assessment-1";
+    record.header.stream_sequence = ++forged_;
+    record.events = events;
+    EXPECT_TRUE(health_.publish(Message(record)));
+  }
+  std::vector<std::string> ids_of_records(const std::string& name) {
+    std::vector<std::string> ids;
+    EXPECT_TRUE(services_[name].process->journal().for_each_output([&](const Message& m) {
+      if (topic_of(m) == Topic::act_record) ids.push_back(header_of(m).message_id);
+      return Status();
+    }));
+    return ids;
+  }
+  [[nodiscard]] std::vector<ServiceAlarm> told_by(const std::string& name) {
+    InMemoryBus listener(network_);
+    EXPECT_TRUE(listener.subscribe_service_topics());
+    std::vector<ServiceAlarm> alarms;
+    EXPECT_TRUE(steps_until([&] {
+      for (const BusItem& item : listener.receive(std::chrono::milliseconds(0), 1000))
+        if (const auto* status = std::get_if<ServiceStatus>(&item); status && status->service == name)
+          alarms = status->alarms;
+      return !alarms.empty();
+    }));
+    return alarms;
+  }
+  std::uint64_t forged_ = 0;
+};
+
+TEST_F(ForgedRecordTest, UnderTheIdOfATrueOneTakesNobodysPlace) {
+  test("a", "2029-01-01");
+  test("b", "2029-02-01");
+  const Message real = retraction(kTestRetracted, "a");
+  const std::string said = say(real);
+  const MaintenanceEvent other = retraction(kTestRetracted, "b");
+  std::vector<std::string> taken = ids_of_records("prognostic_assessment");
+  std::ranges::copy(ids_of_records("advisory_generation"), std::back_inserter(taken));
+  ASSERT_THAT(taken, SizeIs(::testing::Ge(2U)));
+  lose("state_detection");
+  start("state_detection");
+  for (const std::string& id : taken) forge(id, {});
+  for (const std::string& id : taken) forge(id, {other});
+  for (int k = 0; k < 5; ++k) services_["state_detection"].process->step();
+  all_take("advisory/health_report/b");
+  all_take("advisory/" + said);
+  EXPECT_THAT(counted("state_detection"), ElementsAre("b"));
+  EXPECT_THAT(told_by("state_detection"), Contains(::testing::Field(&ServiceAlarm::kind, "unknown_writer")));
+}
+
+/// They fill no journal: of each that came, the id would be kept for ever.
+TEST_F(ForgedRecordTest, ThatIsNoRecordIsNotKept) {
+  test("a", "2029-01-01");
+  const std::string long_id = "act_record/health_assessment/" + std::string(1'000'000, 'x');
+  forge(long_id, {});
+  forge("act_record/health_assessment/\x1b[2J", {});
+  forge("", {event("seal_replaced", "")});
+  for (int k = 0; k < 300; ++k)
+    forge("act_record/health_assessment/" + std::to_string(k), {retraction(kTestRetracted, std::to_string(k))});
+  const auto end = std::chrono::steady_clock::now() + 3 * options_.records_wait;
+  while (std::chrono::steady_clock::now() < end) step();
+  Journal& journal = services_["state_detection"].process->journal();
+  EXPECT_EQ(journal.has_input(long_id), false);
+  for (int k = 0; k < 300; ++k)
+    ASSERT_EQ(journal.has_input("act_record/health_assessment/" + std::to_string(k)), false);
+  EXPECT_THAT(audit("state_detection"), IsEmpty());
+  test("b", "2029-02-01");
+  EXPECT_THAT(counted("state_detection"), ElementsAre("a", "b"));
+}
+
 /// What people said of alarms, to the one service that keeps their states.
 class AlarmActRecordTest : public ActRecordTest {
  protected:
@@ -659,6 +735,71 @@ TEST_F(AlarmActRecordTest, WhatTheDeskRefusedIsNotFetchedBack) {
   const auto end = std::chrono::steady_clock::now() + 10 * options_.records_wait;
   while (std::chrono::steady_clock::now() < end) step();
   EXPECT_THAT(outcomes(none), IsEmpty());
+}
+
+/// Since when a service is silent, only the desk knows, and it has lost its journal.
+class SilenceRecordTest : public AlarmActRecordTest {
+ protected:
+  SilenceRecordTest() {
+    options_.desk->services = {"data_acquisition"};  // on a busy machine the others fall silent, too
+    options_.strangers.services.emplace_back("data_acquisition");
+    options_.longest_without_acts = std::chrono::seconds(1);
+    options_.desk->silence = std::chrono::milliseconds(100);
+    told_.clear();
+  }
+  void SetUp() override {
+    ActRecordTest::SetUp();
+    ASSERT_TRUE(become({": " + kSilent + " unacknowledged"}));
+  }
+  Message seen_silence() {
+    Message said = seen(kSilent);
+    std::get<Acknowledgement>(said).asset_id.clear();
+    return said;
+  }
+  void lose_desk() {
+    lose(kDesk);
+    now_ = add_seconds(now_, 60.0);
+    start_all();
+    services_[kDesk].process->clock().set(now_);
+  }
+  void acquisition_beats() {
+    ServiceStatus status;
+    status.service = "data_acquisition";
+    status.writer_id = "data_acquisition-1";
+    EXPECT_TRUE(health_.publish(status));
+  }
+  const std::string kSilent = "no_heartbeat/data_acquisition";
+};
+
+TEST_F(SilenceRecordTest, ASilentServiceThatSomebodyHasSeenIsSeenAfterARestartAndTheLossOfTheJournal) {
+  tell(seen_silence());
+  const std::vector<std::string> before = {": " + kSilent + " acknowledged"};
+  ASSERT_TRUE(become(before));
+  stop(kDesk);
+  start_all();
+  for (int more = 0; more < 50; ++more) step();
+  EXPECT_EQ(states(), before);
+  lose_desk();
+  EXPECT_TRUE(become(before));
+}
+
+/// That it ran meanwhile nobody else could tell.
+TEST_F(SilenceRecordTest, ASilenceThatCameAfterTheOneThatSomebodySawIsUnseen) {
+  const std::string said = tell(seen_silence());
+  ASSERT_TRUE(become({": " + kSilent + " acknowledged"}));
+  EXPECT_TRUE(steps_until([&] {
+    acquisition_beats();
+    return states().empty();
+  }));
+  ASSERT_TRUE(become({": " + kSilent + " unacknowledged"}));
+  for (int more = 0; more < 100; ++more) step();
+  for (int k = 0; k < 2; ++k) {
+    lose_desk();
+    EXPECT_TRUE(become({": " + kSilent + " unacknowledged"}));
+    EXPECT_TRUE(steps_until([&] { return outcomes(said).size() == 2; }));
+    for (int more = 0; more < 100; ++more) step();
+    EXPECT_TRUE(become({": " + kSilent + " unacknowledged"})) << k;
+  }
 }
 
 }  // namespace

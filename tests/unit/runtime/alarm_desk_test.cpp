@@ -440,6 +440,32 @@ TEST_F(DeskInService, ActsAreRecordedSurviveARestartAndConcludeNothing) {
                                   "acknowledgement by M. Okoye: taken"));
 }
 
+/// Nobody would have seen it, and who did before would be forgotten.
+TEST_F(DeskInService, NobodyAcknowledgesOrSetsAsideWithoutAName) {
+  EXPECT_TRUE(others_.subscribe_service_topics());
+  const auto process = start();
+  ASSERT_TRUE(says(*process, {"sensor_lost/flow unacknowledged"}));
+  Acknowledgement seen;
+  seen.asset_id = "A";
+  seen.advisory_id = "sensor_lost/flow";
+  seen.acknowledged_by = "M. Okoye";
+  seen.header = header("acknowledgement/sensor_lost/1", "");
+  say(*process, seen);
+  seen.header.message_id = "acknowledgement/sensor_lost/2";
+  seen.acknowledged_by = " \u00a0";
+  say(*process, seen);
+  seen.header.message_id = "acknowledgement/sensor_lost/3";
+  seen.acknowledged_by.clear();
+  say(*process, seen);
+  MaintenanceEvent shelf =
+      event(kAlarmShelved, "A", {.alarm_id = "sensor_lost/flow", .until = add_seconds(kNoon, 60.0)});
+  shelf.reported_by.clear();
+  say(*process, shelf);
+  EXPECT_TRUE(says(*process, {"sensor_lost/flow acknowledged"}));
+  EXPECT_THAT(acts(), ElementsAre("acknowledgement by M. Okoye: taken", HasSubstr("does not say who"),
+                                  HasSubstr("does not say who"), HasSubstr("does not say who")));
+}
+
 TEST_F(DeskInService, AServiceWithoutTheDeskGivesItsLayerNoneOfIt) {
   const auto process = start(false);
   say(*process, event(kAssetOutOfService, "A", {}));

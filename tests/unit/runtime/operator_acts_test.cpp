@@ -429,6 +429,26 @@ TEST_F(ActsTest, WhatIsRefusedIsRecordedWithTheReason) {
   EXPECT_TRUE(process->outputs().empty());
 }
 
+/// The id of an acknowledgement says of which advice it is: anybody can say it first.
+TEST_F(ActsTest, WhatIsRefusedTakesNoIdFromWhatIsTrulySaid) {
+  auto process = start();
+  Acknowledgement too_long = seen("stranger");
+  too_long.remark = std::string(4001, 'x');
+  const Acknowledgement nameless = seen("");
+  for (int k = 0; k < 3; ++k) {
+    say(*process, too_long);
+    say(*process, nameless);
+    process.reset();
+    process = start();
+  }
+  ASSERT_THAT(acts(), SizeIs(2)) << "each once";
+  say(*process, seen("J. Silva"));
+  ASSERT_THAT(acts(), SizeIs(3));
+  EXPECT_EQ(acts()[2].act.outcome, "taken");
+  EXPECT_EQ(acts()[2].act.who, "J. Silva");
+  EXPECT_THAT(process->outputs(), SizeIs(1));
+}
+
 TEST_F(ActsTest, OnUnknownAssetsAreRecordedAsRefusedAndDoNotFillTheRecord) {
   RunnerOptions options = fast_options();
   options.assets = {"A"};

@@ -70,7 +70,7 @@ struct AlarmAct {
 }
 
 /// What the desk itself keeps beside acknowledgements, in their form and by nobody: that the alarm was over. Its id:
-/// alarm_over/<alarm id>/<ns>
+/// `alarm_over/ALARM_ID/NANOSECONDS`
 struct AlarmOver {
   std::string alarm_id;
   UtcTime at;

@@ -41,13 +41,13 @@ TimeSeries with_more_noise(const AssetConfig& asset, TimeSeries samples, const N
 
 // What the window's own start and load make of the difference is no noise: they are fitted.
 void take_off_own(const PemRecording& window, const SimulatedOutputs& own, RowMatrix& difference) {
-  const Eigen::Index rows = difference.size();
-  const Eigen::VectorXd scale = window.noise_std.cwiseInverse().replicate(difference.rows(), 1);
-  Eigen::MatrixXd columns = scale.asDiagonal() * Eigen::MatrixXd(own.sensitivities.topRows(rows));
+  const Eigen::VectorXd scale = window.noise_std.cwiseInverse().replicate(difference.rows(), 1);  // 0: left out
+  const Eigen::VectorXd one_over = (scale.array() > 0.0).select(scale.cwiseInverse(), 0.0);
+  Eigen::MatrixXd columns = scale.asDiagonal() * Eigen::MatrixXd(own.sensitivities);
   for (auto column : columns.colwise()) column /= std::max(column.norm(), 1e-300);
-  Eigen::Map<Eigen::VectorXd> all(difference.data(), rows);
-  const Eigen::VectorXd seen = scale.cwiseProduct(all);
-  all -= (columns * columns.colPivHouseholderQr().solve(seen)).cwiseQuotient(scale);
+  Eigen::Map<Eigen::VectorXd> all(difference.data(), difference.size());
+  const Eigen::VectorXd fitted = columns * columns.colPivHouseholderQr().solve(scale.cwiseProduct(all));
+  all -= one_over.cwiseProduct(fitted);
 }
 
 }  // namespace

@@ -188,7 +188,7 @@ TEST(Faults, NameThePlaceAndWhatWouldMendIt) {
       {"tanh(v)", "not m/s"},
       {"cosh(a)", "did you mean 'cos'"},
       {"sign(v)", "width"},
-      {"x^a", "no fixed number"},
+      {"x^a", "not a fixed number"},
       {"a^x", "exponent in m"},
       {"a/0", "divides by zero"},
       {"2[metre]", "is not a unit"},

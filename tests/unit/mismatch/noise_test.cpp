@@ -103,6 +103,24 @@ TEST(Noise, OfARoundedSlowChannelCountsTheRounding) {
   EXPECT_NEAR(data.samples[0].channels[0].noise_std, std::hypot(kSigma, kStep / std::sqrt(12.0)), 0.06 * kSigma);
 }
 
+TEST(Noise, OfTwoSourcesHasTheSumOfTheirCovariances) {
+  const auto [white, white_std] = sum_of_noise({}, 3.0, {16.0, 0.0, 0.0, 0.0});
+  EXPECT_TRUE(white.coefficients.empty());
+  EXPECT_DOUBLE_EQ(white_std, 5.0);
+  const ChannelColour slow{.coefficients = {0.5, 0.2, -0.1}, .innovation_std = 0.8};
+  const auto [same, same_std] = sum_of_noise(slow, 2.0, {});
+  ASSERT_EQ(same.coefficients.size(), 3U);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(same.coefficients[k], slow.coefficients[k], 1e-12);
+  EXPECT_DOUBLE_EQ(same_std, 2.0);
+  // White noise of the sensor and as much that is correlated by 0.8, 0.64, 0.512: half of these correlations.
+  const auto [both, both_std] = sum_of_noise({}, 1.0, {1.0, 0.8, 0.64, 0.512});
+  EXPECT_DOUBLE_EQ(both_std, std::sqrt(2.0));
+  ASSERT_EQ(both.coefficients.size(), 3U);
+  const std::vector<double>& a = both.coefficients;
+  EXPECT_NEAR(a[0] + a[1] * 0.4 + a[2] * 0.32, 0.4, 1e-12);
+  EXPECT_NEAR(a[0] * 0.4 + a[1] + a[2] * 0.4, 0.32, 1e-12);
+}
+
 TEST(InputJumps, TheTwoSamplesAfterAJumpDoNotCount) {
   TimeSeries samples;
   samples.channels.push_back({.name = "motor_voltage", .unit = "V", .values = {}});

@@ -80,7 +80,7 @@ std::vector<double> means_of_neighbours(const std::vector<double>& held) {
 namespace {
 
 constexpr double kReach_s = 0.16;
-constexpr double kStandardErrors = 1.5;
+constexpr double kStandardErrors = 1.8;
 
 // Standard deviation of white noise: of third differences, without the tenth of them that is largest (corners).
 double noise_of(const std::vector<double>& values) {

@@ -4,7 +4,7 @@
 //   u(t) = y(t) + tau dy/dt       y, dy/dt: a parabola fitted to the samples within h of t
 //
 // tau: the sensor's time constant. h: the longest up to 0.16 s whose u agrees with those of all shorter ones within
-// 1.5 standard errors, so that a corner of the signal is not rounded by more than the noise could. What noise is left drives
+// 1.8 standard errors, so that a corner of the signal is not rounded by more than the noise could. What noise is left drives
 // the simulation, and friction that damps it there fits better than none. Source: Katkovnik, IEEE Transactions on Signal Processing 47 (1999) 2567
 // (intersection of confidence intervals).
 #pragma once

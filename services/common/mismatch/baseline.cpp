@@ -65,7 +65,7 @@ class BaselineFit {
   }
 
  private:
-  // Of the measured channels that drive the simulation; what they cannot be told from is not asked.
+  // Colours of the measured channels that drive the simulation. What a law does must be more than what they feign.
   NoiseColour noise_of_inputs() {
     const std::vector<std::string> inputs = simulated_part(asset_, fit_.samples.front()).inputs;
     if (inputs.empty()) return {};

@@ -30,6 +30,14 @@ double inside(const Unknown& unknown, double value) {
                             : value;
 }
 
+// How far a step may leave the range: by its own width. Where the recordings hardly show an unknown nothing else ends its
+// way, and what is held at its end in the end has been bent to values that nothing has.
+void keep_near_range(const Unknown& unknown, double at, double& low, double& high) {
+  const double least = unknown.to_unknown(unknown.min), most = unknown.to_unknown(unknown.max), width = most - least;
+  low = std::min(0.0, least - width - at);
+  high = std::max(0.0, most + width - at);
+}
+
 }  // namespace
 
 struct BoxSearch::LinearModel {
@@ -93,7 +101,11 @@ BoxSearch::LinearModel BoxSearch::linear_model() const {
     const Unknown& unknown = problem_.shared[static_cast<std::size_t>(k)];
     const double at = point_.shared[static_cast<std::size_t>(k)];
     if (held_[static_cast<std::size_t>(k)]) here.low(k) = here.high(k) = 0.0;
-    if (!unknown.is_known()) continue;
+    if (!unknown.is_known()) {
+      if (!held_[static_cast<std::size_t>(k)] && has_range(unknown))
+        keep_near_range(unknown, at, here.low(k), here.high(k));
+      continue;
+    }
     here.gram(k, k) += 1.0 / (unknown.prior_std * unknown.prior_std);
     here.gradient(k) -= unknown.prior_residual(at) / unknown.prior_std;
     if (held_[static_cast<std::size_t>(k)] || !has_range(unknown)) continue;

@@ -263,6 +263,27 @@ FreeOfRecording free_of(const PemProblem& problem, std::size_t recording, const 
   return free;
 }
 
+namespace {
+
+// d residual / d unknown from d output / d quantity, rows of sample * channels + channel. `weight`: per channel. Unknowns
+// of other recordings have columns of zeros.
+void to_unknowns(const FreeOfRecording& free, const Eigen::RowVectorXd& weight, RowMatrix& jacobian) {
+  const Eigen::Index channels = weight.size(), unknowns = std::ssize(free.slope);
+  const RowMatrix scale = -weight.transpose() * Eigen::Map<const Eigen::RowVectorXd>(free.slope.data(), unknowns);
+  if (free.columns == unknowns) {  // one sample's block is contiguous: all samples are scaled by the same row
+    Eigen::Map<RowMatrix>(jacobian.data(), jacobian.rows() / channels, channels * unknowns).array().rowwise() *=
+        Eigen::Map<const Eigen::RowVectorXd>(scale.data(), scale.size()).array();
+    return;
+  }
+  RowMatrix wide = RowMatrix::Zero(jacobian.rows(), free.columns);
+  for (Eigen::Index row = 0; row < jacobian.rows(); ++row)
+    for (Eigen::Index k = 0; k < unknowns; ++k)
+      wide(row, free.column[static_cast<std::size_t>(k)]) = scale(row % channels, k) * jacobian(row, k);
+  jacobian = std::move(wide);
+}
+
+}  // namespace
+
 // r_t - sum_j a_j r_(t-j) over the innovation's standard deviation (1 for white noise); the first samples, whose past
 // is not known, are taken as they are.
 void whiten(const NoiseColour& colour, Linearisation& at) {
@@ -295,27 +316,15 @@ Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording
                                 const std::vector<double>& own, Derivatives derivatives) {
   const PemRecording& part = problem.recordings[recording];
   const FreeOfRecording free = free_of(problem, recording, shared, own, derivatives);
-  const std::vector<double>& slope = free.slope;
   Result<SimulatedOutputs> outputs =
       part.simulation->run(values_at(problem, recording, shared, own), free.quantity, problem.simulation_options);
   if (!outputs) return fail(outputs.error());
-  const Eigen::Index channels = part.noise_std.size(), samples = outputs->values.rows();
   const Eigen::RowVectorXd weight = part.noise_std.cwiseInverse().transpose();
   const RowMatrix residual = (part.simulation->recorded() - outputs->values) * weight.asDiagonal();
   Linearisation result{.simulated = std::move(outputs->values),
                        .residual = Eigen::Map<const Eigen::VectorXd>(residual.data(), residual.size()),
                        .jacobian = std::move(outputs->sensitivities)};
-  // One sample's block of channels x unknowns is contiguous: all samples are scaled by the same row.
-  const auto unknowns = static_cast<Eigen::Index>(slope.size());
-  const RowMatrix scale = -weight.transpose() * Eigen::Map<const Eigen::RowVectorXd>(slope.data(), unknowns);
-  Eigen::Map<RowMatrix>(result.jacobian.data(), samples, channels * unknowns).array().rowwise() *=
-      Eigen::Map<const Eigen::RowVectorXd>(scale.data(), scale.size()).array();
-  if (free.columns != unknowns) {
-    RowMatrix wide = RowMatrix::Zero(result.jacobian.rows(), free.columns);
-    for (Eigen::Index k = 0; k < unknowns; ++k)
-      wide.col(free.column[static_cast<std::size_t>(k)]) = result.jacobian.col(k);
-    result.jacobian = std::move(wide);
-  }
+  to_unknowns(free, weight, result.jacobian);
   whiten(part.colour, result);
   weigh(part.weight, result);
   if (!result.residual.allFinite() || !result.jacobian.allFinite()) return fail("the simulation overflows");

@@ -358,7 +358,7 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
     const auto ends_it = [](const Trial& trial) { return excess(*trial.model) <= kGross; };
     return (gross && std::ranges::any_of(differing.trials(), ends_it)) || one_law_does(trials, naming, data, options);
   };
-  if (gross && !one_does())
+  if (gross && !one_does() && leave_most(with_differing(trials), *naming.best.model))
     if (const auto given = with_given_values(naming.best, data)) refit_from(*given, singles);
   if (level == 0 && leave_most(with_differing(trials), *naming.best.model))
     refit_also(closed_forms_for(naming.best, data, options));
@@ -467,7 +467,8 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     const Trial* best = best_of(trials, smallest_dispersion(trials, *naming.best.model));
     if (value && (best == nullptr || criterion_behind(*value->with.model, *best->model) < -kCannotTell)) {
       if (auto beside = search_beside(naming, *value, data, options, progress)) return std::move(*beside);
-      if (!passed(data.deadline)) trials = try_laws(naming, data, options, kNothing);  // some were cut beside the value
+      if (!in_time("what is beside a value of the asset file that explains more than any law")) break;
+      trials = try_laws(naming, data, options, kNothing);  // some were cut beside the value
       if (naming.sensors_are_inexact) return naming;
     }
     const double phi = smallest_dispersion(trials, *naming.best.model);

@@ -42,7 +42,8 @@ Result<Explanation> Analysis::analyse() {
   if (!why_none_) take_values_found();
   if (!why_none_ && own_) say_what_differs();
   const bool asked = why_none_ || beside_ || !result_.asset_values.empty();
-  if (!asked && time_.in_time("the values that the asset file fixes")) ask_the_datasheet();
+  time_.allow(kSettledBy);
+  if (!asked && time_.in_time(kFixedValues)) ask_the_datasheet();
   time_.allow(1.0);
   if (why_none_) take_no_law();
   if (!best_.effects.empty()) {

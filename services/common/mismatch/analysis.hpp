@@ -10,6 +10,7 @@
 
 #include "sealwatch/mismatch/explain.hpp"
 #include "services/common/estimation/runaway.hpp"
+#include "services/common/mismatch/averaged_inputs.hpp"
 #include "services/common/mismatch/baseline.hpp"
 #include "services/common/mismatch/datasheet.hpp"
 #include "services/common/mismatch/held_out.hpp"
@@ -24,6 +25,10 @@ namespace sealwatch::mismatch {
 
 /// Of the time limit, before what was found is proven and told.
 inline constexpr double kSearchShare = 0.75;
+/// The same, where a search was cut: by then it is settled what of it stands, and whether a fixed value does as well.
+inline constexpr double kSettledBy = 0.9;
+/// What was not asked, where time was up.
+inline constexpr const char* kFixedValues = "the values that the asset file fixes";
 
 class Analysis {
  public:
@@ -48,9 +53,16 @@ class Analysis {
 
   // What is missing (analysis_search.cpp).
 
-  // In tests of different days first beside a seal of its own in each, then in common from what was found there, unless
-  // a seal that wears leaves nothing. What else differs from test to test is asked beside the laws.
+  // In a gross misfit with averaged inputs first, and as they were held where that makes a difference in the end.
   Status look_for_what_is_missing();
+  bool take_averaged_inputs();
+  [[nodiscard]] bool averages_do();
+  // From what was found; that stays where there is no time for more.
+  void look_with_held_inputs();
+  // In tests of different days first beside a seal of its own in each, then in common from what was found there, unless
+  // a seal that wears leaves nothing. What else differs from test to test is asked beside the laws. `from`: what is
+  // known already.
+  Status look_from(std::optional<Trial> from);
   // Sensors that were off beside what differs are so in common; also where the time to search is over.
   Result<Screening> look_with_inexact_sensors(const std::vector<KnownValue>& known, const ScreeningOptions& options);
   // Also where the time to search is over: it is what is told then.
@@ -181,7 +193,12 @@ class Analysis {
   const Progress& progress_;
   TimeBudget time_;
   std::shared_ptr<const FittedModel> baseline_;
-  std::optional<OwnValues> own_;  ///< each test has its own of a parameter, and nothing in common is preferred
+  struct AsHeld {
+    Data fit, holdout;
+    std::shared_ptr<const FittedModel> baseline;
+  };
+  std::optional<AsHeld> as_held_;  ///< set: inputs were averaged
+  std::optional<OwnValues> own_;   ///< each test has its own of a parameter, and nothing in common is preferred
   Naming naming_;
   Trial best_;
   std::string too_small_by_size_;  ///< a law that was taken out by law_sizes alone, in words

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <tuple>
 
+#include "services/common/mismatch/averaged_inputs.hpp"
 #include "services/common/mismatch/between_tests.hpp"
 #include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/held_start.hpp"
@@ -16,13 +17,57 @@
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr double kSettledBy = 0.9;  // of the time limit: what was found is proven after that
+constexpr const char* kAveraged =
+    "The held input was averaged in the simulation, which takes fewer steps and changes less than a twentieth of the "
+    "misfit.";
+constexpr const char* kOnlyAveraged = "The held input was averaged in the simulation: there was no time for its jumps.";
 constexpr const char* kSensorsAgain = "what was found beside sensors within their tolerances";
 
 }  // namespace
 
 Status Analysis::look_for_what_is_missing() {
   tell("looking for what is missing", 0.15);
+  if (windowed() || !take_averaged_inputs()) return look_from(std::nullopt);
+  if (const Status looked = look_from(std::nullopt); !looked) return looked;
+  if (!averages_do()) look_with_held_inputs();
+  return {};
+}
+
+bool Analysis::take_averaged_inputs() {
+  std::optional<Averaged> rough = averaged(*baseline_, fit_, options_.threads);
+  if (!rough) return false;
+  as_held_ = {.fit = fit_, .holdout = holdout_, .baseline = baseline_};
+  fit_ = std::move(rough->data);
+  if (std::optional<Data> held_out = with_averaged_inputs(asset_, holdout_)) holdout_ = std::move(*held_out);
+  baseline_ = std::move(rough->model);
+  return true;
+}
+
+bool Analysis::averages_do() {
+  const bool they_do = excess(*best_.model) >= fit_.least_excess;
+  if (they_do) result_.notes.emplace_back(kAveraged);
+  return they_do;
+}
+
+void Analysis::look_with_held_inputs() {
+  const auto before = std::tuple(fit_, holdout_, baseline_, own_, naming_, best_, why_none_, asked_values_);
+  std::optional<Trial> from;
+  if (!own_ && !best_.effects.empty()) {
+    Result<FittedModel> model = fit_model(best_.model->asset, as_held_->fit, best_.model.get(), options_.threads);
+    if (model) from = Trial{best_.effects, std::make_shared<const FittedModel>(std::move(*model))};
+  }
+  std::tie(fit_, holdout_, baseline_) = std::tie(as_held_->fit, as_held_->holdout, as_held_->baseline);
+  forget_predictions();
+  own_.reset();
+  why_none_.reset();
+  asked_values_.clear();
+  if (!time_.deadline().passed() && look_from(from)) return;
+  forget_predictions();
+  std::tie(fit_, holdout_, baseline_, own_, naming_, best_, why_none_, asked_values_) = before;
+  result_.notes.emplace_back(kOnlyAveraged);
+}
+
+Status Analysis::look_from(std::optional<Trial> from) {
   ExplainOptions options = options_;
   if (driven_unseen()) options.maximum_laws = 0;
   if (!windowed()) fit_.may_differ = may_differ(asset_, fit_);
@@ -31,7 +76,7 @@ Status Analysis::look_for_what_is_missing() {
   Result<Screening> first = screen(*baseline_, prepared(fit_), screening);
   if (!first) return fail(first.error());
   say_how_likely_by_noise(*first);
-  if (!windowed() && may_age(asset_, fit_) && result_.statistically_significant) {
+  if (!from && !windowed() && may_age(asset_, fit_) && result_.statistically_significant) {
     own_ = each_its_own(what_wears(asset_), fit_, *baseline_, options.threads);
     if (own_ && !look_beside_own(*own_, {}, options)) own_.reset();
     if (own_ && !own_->naming.differs_in.empty()) {
@@ -50,7 +95,6 @@ Status Analysis::look_for_what_is_missing() {
     }
   }
   if (own_) fit_.may_differ.clear();  // nothing else was found to differ beside it
-  std::optional<Trial> from;
   if (own_ && !own_->naming.best.effects.empty()) from = found_in_common(*own_);
   if (own_) tell("looking again, with one value for all tests", 0.5);
   if (!from && options.maximum_laws > 0 && excess(*baseline_) > kGross) {

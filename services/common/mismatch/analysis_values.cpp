@@ -34,7 +34,10 @@ void Analysis::ask_the_datasheet() {
   std::vector<std::string> instead_of;
   for (const Effect& effect : best_.effects) instead_of.push_back(law_in_words(law_at(effect)));
   const auto wrong = laws > 0 ? values_in_place_of_laws(question) : values_alone(question, 1);
-  if (!wrong) return;
+  if (!wrong) {
+    static_cast<void>(time_.in_time(kFixedValues));  // or the question was cut
+    return;
+  }
   asked_values_.push_back(asked(*wrong, naming_));
   // Laws that stand in both explanations are claimed with the better one.
   const double better_by = laws == 0 ? kWorthAnother : wrong->with.effects.empty() ? kCannotTell : 0.0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sealwatch/model/driving_channels.hpp"
+#include "services/common/mismatch/averaged_inputs.hpp"
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/explain_input.hpp"
 #include "services/common/mismatch/held_out.hpp"
@@ -33,7 +34,7 @@ class BaselineFit {
     static_cast<void>(find_noise(holdout_, channels));  // its standard deviations; its colour is that of the others
     holdout_.colour.assign(holdout_.samples.size(), fit_.colour.front());
     baseline_.window_s = window_of(asset_, fit_.samples.front());
-    Result<FittedModel> model = fit_model(asset_, prepared(fit_), nullptr, options_.threads);
+    Result<FittedModel> model = fit_by_averaged_inputs(asset_, prepared(fit_), nullptr, options_.threads);
     if (model && by_measurements(asset_, fit_)) {
       const InputNoise noise = input_noise(*model, prepared(fit_), of_inputs, options_.seed);
       for (Data* data : {&holdout_, &fit_}) add_input_noise(*data, asset_, channels, noise);
@@ -91,7 +92,7 @@ class BaselineFit {
     std::ranges::copy(known_inputs(asset_, model.problem), std::back_inserter(known));
     fit_.known = that_show(known, model, prepared(fit_), options_.threads);
     if (fit_.known.empty()) return model;
-    Result<FittedModel> again = fit_model(model.asset, prepared(fit_), &model, options_.threads);
+    Result<FittedModel> again = fit_by_averaged_inputs(model.asset, prepared(fit_), &model, options_.threads);
     if (again) return std::move(*again);
     fit_.known.clear();
     return model;

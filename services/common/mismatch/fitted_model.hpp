@@ -37,7 +37,9 @@ struct Data {
   bool start_as_measured = false;
   double held_within_s = 0.0;  ///< simulations are held to the recordings (SimulationOptions::held_within_s); 0: free
   double relative_tolerance = SimulationOptions{}.relative_tolerance;  ///< where a fit sets out from no other one
-  const Deadline* deadline = nullptr;                                  ///< of everything that is simulated
+  /// Mean square misfit below which simulations are not exact enough to tell laws apart: a search ends there.
+  double least_excess = 0.0;
+  const Deadline* deadline = nullptr;  ///< of everything that is simulated
 };
 
 struct FittedModel {

@@ -441,7 +441,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     begin_with_what_shows(naming, data, options);
   } else {
     naming.trials.push_back(naming.best = from);
-    if (!in_time("which of the laws found before are needed")) return naming;
+    if (excess(*from.model) < data.least_excess || !in_time("which of the laws found before are needed")) return naming;
     drop_what_is_not_needed(naming, data, options.threads);
     Result<Screening> last = screen(*naming.best.model, data, screening);
     if (!last) return fail(last.error());
@@ -451,7 +451,9 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
       one_law_for_several(naming, data, options);
     }
   }
+  const auto is_near = [&] { return excess(*naming.best.model) < data.least_excess; };
   while (static_cast<int>(naming.best.effects.size()) < options.maximum_laws) {
+    if (is_near()) return naming;
     if (!differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate) ||
         !promising(naming.last, *naming.best.model))
       break;
@@ -489,6 +491,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     const Screening asked = naming.last;
     const Trial before = naming.best;
     if (!take(naming, *best, data, options)) break;
+    if (is_near()) return naming;
     if (excess(*naming.best.model) <= kGross &&
         is_within_tolerance(naming.best.effects.back(), naming.best, data.sensors)) {
       naming.best = before;

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "sealwatch/message/id_part.hpp"
+#include "sealwatch/message/outside.hpp"
 #include "services/common/runtime/confirmed_positions.hpp"
 #include "services/common/runtime/identity.hpp"
 #include "services/common/runtime/log.hpp"
@@ -96,7 +97,8 @@ Status LayerRunner::start() {
   status.started_ns = started_ns_;
   status.process_id = ::getpid();
   status.state = forgotten_.empty() ? "running" : kRestoring;
-  status.written = written();  // the first heartbeat tells of acts, which others compare with their own record
+  status.written = written();    // the first heartbeat tells of acts, which others compare with their own record,
+  status.received = received();  // and of what was read, which they compare with their own journal
   alarms_.tell(status);
   Heartbeat::Options beats = options_.heartbeat;
   const bool takes_samples = std::ranges::find(kind_->inputs(), Topic::raw_samples) != kind_->inputs().end();
@@ -522,8 +524,9 @@ std::vector<StreamPosition> LayerRunner::written() const {
   return written;
 }
 
-void LayerRunner::report_progress() {
-  if (!heartbeat_) return;  // the past is still being restored
+/// Of services also what is silent: who lost its journal goes on under another name, and learns here what it has lost.
+std::vector<StreamPosition> LayerRunner::received() const {
+  constexpr std::size_t kMostSilent = 64;
   std::vector<StreamPosition> received;
   for (const Key& stream : reader_->active()) {
     const auto position = committed_.find(stream);
@@ -532,6 +535,17 @@ void LayerRunner::report_progress() {
   heartbeat_->update([&](ServiceStatus& status) {
     // What a layer keeps as its memory waits for nothing; nor does what belongs to a test that is set aside elsewhere.
     const std::uint64_t open = journal_.open_inputs();
+  for (const auto& [stream, position] : committed_) {
+    if (received.size() >= active.size() + kMostSilent) break;
+    if (is_of_a_service(stream.first) && std::ranges::find(active, stream) == active.end())
+      received.push_back({stream.first, stream.second, position});
+  }
+  return received;
+}
+
+void LayerRunner::report_progress() {
+  if (!heartbeat_) return;  // the past is still being restored
+  std::vector<StreamPosition> received = this->received();
     const std::uint64_t idle = std::min<std::uint64_t>(lanes_.held() + waiting_in_vain_, open);
     status.pending_inputs = std::max<std::uint64_t>(open - idle, lanes_.open()) + ready_.size();
     status.written = written();

@@ -176,6 +176,7 @@ class LayerRunner {
   /// How far the own streams go, and the record of acts.
   [[nodiscard]] std::vector<StreamPosition> written() const;
   void report_progress();
+  [[nodiscard]] std::vector<StreamPosition> received() const;
 
   // The past (layer_runner_past.cpp).
   [[nodiscard]] Status restore_past();

@@ -105,6 +105,37 @@ class TestsAndActsLayer final : public Layer {
   static constexpr std::array kOutputs = {Topic::advisory};
 };
 
+/// Whoever lost its journal while all were down goes on under another name, and must learn what it has lost.
+TEST_F(ActsTest, WhatWasReadOfASilentNeighbourIsToldAfterARestart) {
+  InMemoryBus listener(network_);
+  ASSERT_TRUE(listener.subscribe_service_topics());
+  const auto start_reader = [this] {
+    auto process = std::make_unique<Process>(
+        network_, [] { return std::make_unique<TestsAndActsLayer>(); }, place_.connection());
+    process->start();
+    return process;
+  };
+  auto process = start_reader();
+  HealthReport report;
+  report.asset_id = "A";
+  report.header = header("health_report/A-1", "A-1");
+  report.header.writer_id = "health_assessment-lost";
+  report.header.stream_sequence = 1;
+  say(*process, report);
+  process.reset();
+  (void)listener.receive(std::chrono::milliseconds(1), 1000);
+  process = start_reader();
+  std::vector<StreamPosition> received;
+  EXPECT_TRUE(step_until(
+      [&] {
+        for (const BusItem& item : listener.receive(std::chrono::milliseconds(5), 1000))
+          if (const auto* status = std::get_if<ServiceStatus>(&item)) received = status->received;
+        return !received.empty();
+      },
+      [&] { process->step(); }));
+  EXPECT_EQ(received, (std::vector<StreamPosition>{{"health_report", "health_assessment-lost", 1}}));
+}
+
 class EarlyRetractionTest : public ActsTest {
  protected:
   EarlyRetractionTest() {

@@ -309,6 +309,8 @@ Status LayerRunner::take(Message message, const ActRecord* record) {
       note_refused_test(*raw, *refused);
       return {};
     }
+    const bool is_said_here = record == nullptr && is_an_act(message) && is_listened_to(message);
+    if (is_said_here && !keeps_refused(message, *refused)) return {};
     if (may_be_fetched_later(message)) {
       (void)note_act(message, refused, InputState::consumed, record);
       return {};
@@ -528,13 +530,11 @@ std::vector<StreamPosition> LayerRunner::written() const {
 std::vector<StreamPosition> LayerRunner::received() const {
   constexpr std::size_t kMostSilent = 64;
   std::vector<StreamPosition> received;
-  for (const Key& stream : reader_->active()) {
+  const std::vector<Key> active = reader_->active();
+  for (const Key& stream : active) {
     const auto position = committed_.find(stream);
     received.push_back({stream.first, stream.second, position == committed_.end() ? 0 : position->second});
   }
-  heartbeat_->update([&](ServiceStatus& status) {
-    // What a layer keeps as its memory waits for nothing; nor does what belongs to a test that is set aside elsewhere.
-    const std::uint64_t open = journal_.open_inputs();
   for (const auto& [stream, position] : committed_) {
     if (received.size() >= active.size() + kMostSilent) break;
     if (is_of_a_service(stream.first) && std::ranges::find(active, stream) == active.end())
@@ -546,6 +546,9 @@ std::vector<StreamPosition> LayerRunner::received() const {
 void LayerRunner::report_progress() {
   if (!heartbeat_) return;  // the past is still being restored
   std::vector<StreamPosition> received = this->received();
+  heartbeat_->update([&](ServiceStatus& status) {
+    // What a layer keeps as its memory waits for nothing; nor does what belongs to a test that is set aside elsewhere.
+    const std::uint64_t open = journal_.open_inputs();
     const std::uint64_t idle = std::min<std::uint64_t>(lanes_.held() + waiting_in_vain_, open);
     status.pending_inputs = std::max<std::uint64_t>(open - idle, lanes_.open()) + ready_.size();
     status.written = written();

@@ -480,6 +480,38 @@ TEST_F(ActsTest, WhatIsRefusedTakesNoIdFromWhatIsTrulySaid) {
   EXPECT_THAT(process->outputs(), SizeIs(1));
 }
 
+/// Somebody stands for each act, whatever it is.
+TEST_F(ActsTest, WhatNobodySaidIsRefused) {
+  const auto process = start();
+  say(*process, replaced(" ", UtcTime{1'899'000'000'000'000'000}));
+  MaintenanceEvent retraction = replaced("", UtcTime{1'899'000'000'000'000'000});
+  retraction.kind = kTestRetracted;
+  retraction.header.message_id = retraction_id("A", kTestRetracted, "A-1", UtcTime{1'899'000'000'000'000'000});
+  say(*process, retraction);
+  ASSERT_THAT(acts(), SizeIs(2));
+  for (const AuditEntry& entry : acts()) EXPECT_THAT(entry.act.outcome, HasSubstr("does not say who"));
+  EXPECT_TRUE(process->outputs().empty());
+}
+
+/// A stranger never stops: the record says how often, hardly grows, and a person's act stands in it.
+TEST_F(ActsTest, WhatIsRefusedWithoutEndIsCounted) {
+  const auto process = start();
+  for (int k = 0; k < 64 + 100; ++k) {
+    Acknowledgement nameless = seen("");
+    nameless.remark = std::to_string(k);
+    EXPECT_TRUE(operator_.publish(nameless));
+    process->step();
+  }
+  say(*process, seen("J. Silva"));
+  const std::vector<AuditEntry> entries = acts();
+  ASSERT_THAT(entries, SizeIs(64 + 7 + 1)) << "at the 1st, 2nd, ..., 64th that is left out";
+  EXPECT_EQ(entries[70].act.kind, "refused_acts");
+  EXPECT_THAT(entries[70].act.text, HasSubstr("64 more"));
+  EXPECT_THAT(entries[70].act.outcome, HasSubstr("does not say who"));
+  EXPECT_EQ(entries[71].act.outcome, "taken");
+  EXPECT_FALSE(find_break("advisory_generation", entries));
+}
+
 TEST_F(ActsTest, OnUnknownAssetsAreRecordedAsRefusedAndDoNotFillTheRecord) {
   RunnerOptions options = fast_options();
   options.assets = {"A"};

@@ -56,12 +56,6 @@ void set_layout(Understood& log) {
   log.map.log.first_row = static_cast<int>(found.first_row);
 }
 
-/// Its header cell; its place where another column has the same.
-std::string name_of_column(const Offer& offer, std::size_t column) {
-  const std::string& text = offer.columns[column].text;
-  return std::ranges::count(offer.columns, text, &OfferedColumn::text) > 1 ? place_name(column) : text;
-}
-
 void set_columns(Understood& log) {
   const ColumnMapping time = log.map.columns["time"];
   log.map.columns = {{"time", time}};
@@ -180,7 +174,7 @@ std::string unreadable(const Understood& log, const ChannelDescription& channel)
 /// The columns that may be a channel that was not found, and what to write for it; "" where there is none.
 std::string may_be_it(const Understood& log, const ChannelDescription& channel) {
   if (std::string why = unreadable(log, channel); !why.empty()) return why;
-  const std::string& time = log.map.columns.at("time").column;
+  const std::size_t time = time_column(log.offer);
   const std::vector<std::size_t> columns = columns_of_unit(log.offer, channel, time, log.guesses);
   if (!columns.empty()) {
     const OfferedColumn& first = log.offer.columns[columns.front()];
@@ -401,7 +395,7 @@ Result<Understood> understand(const AssetNewOptions& options) {
   Understood log;
   log.offer = std::move(*offer);
   log.map.columns["time"] = guess_time(log.offer);
-  const std::string& time = log.map.columns["time"].column;
+  const std::size_t time = time_column(log.offer);
   const Result<const PlantDescription*> wanted =
       options.model.empty() ? &guess_plant(log.offer, time) : named_plant(options.model);
   if (!wanted) return fail(wanted.error());
@@ -409,8 +403,7 @@ Result<Understood> understand(const AssetNewOptions& options) {
   if (options.model.empty())
     log.remarks.push_back("plant " + log.plant->name +
                           " is a guess, the built-in plant that fits best; for your own plant give --model FILE.yaml");
-  if (const ColumnMapping& clock = log.map.columns["time"];
-      clock.unit == "s" && unit_of(log.offer.columns[*find_offered(log.offer.columns, clock.column)]).empty())
+  if (log.map.columns["time"].unit == "s" && unit_of(log.offer.columns[time]).empty())
     log.remarks.emplace_back("the log gives no unit for the time: taken for s");
   log.guesses = guess_channels(log.offer, *log.plant, time);
   if (!options.yes && isatty(STDIN_FILENO) != 0) ask(log);

@@ -111,7 +111,7 @@ bool is_taken(const std::vector<ChannelGuess>& guesses, std::size_t column) {
 }
 
 /// Whatever a column is called: its unit says which channel it is where no other column and no other channel has such.
-void add_by_unit_alone(const Offer& offer, const PlantDescription& plant, const std::string& time_column,
+void add_by_unit_alone(const Offer& offer, const PlantDescription& plant, std::size_t time_column,
                        std::vector<ChannelGuess>& guesses) {
   std::map<std::size_t, std::vector<std::string>> channels_of;  // column
   std::vector<ChannelGuess> only;
@@ -135,24 +135,24 @@ std::string unit_for(const OfferedColumn& column, const ChannelDescription& chan
   return unit_at_the_end(column.text, channel.unit);
 }
 
-std::vector<std::size_t> columns_of_unit(const Offer& offer, const ChannelDescription& channel,
-                                         const std::string& time_column, const std::vector<ChannelGuess>& guesses) {
+std::vector<std::size_t> columns_of_unit(const Offer& offer, const ChannelDescription& channel, std::size_t time_column,
+                                         const std::vector<ChannelGuess>& guesses) {
   std::vector<std::size_t> columns;
   for (std::size_t column = 0; column < offer.columns.size(); ++column) {
     const std::string unit = unit_for(offer.columns[column], channel);
-    if (offer.columns[column].text == time_column || is_taken(guesses, column) || unit.empty() || unit == "1") continue;
+    if (column == time_column || is_taken(guesses, column) || unit.empty() || unit == "1") continue;
     if (convert_unit(unit, channel.unit.empty() ? "1" : channel.unit) && has_numbers(offer, column))
       columns.push_back(column);
   }
   return columns;
 }
 
-std::vector<std::size_t> plain_columns(const Offer& offer, const ChannelDescription& channel,
-                                       const std::string& time_column, const std::vector<ChannelGuess>& guesses) {
+std::vector<std::size_t> plain_columns(const Offer& offer, const ChannelDescription& channel, std::size_t time_column,
+                                       const std::vector<ChannelGuess>& guesses) {
   std::vector<std::size_t> columns;
   for (std::size_t column = 0; column < offer.columns.size(); ++column) {
     const std::string unit = unit_for(offer.columns[column], channel);
-    if (offer.columns[column].text == time_column || is_taken(guesses, column) || unit.empty()) continue;
+    if (column == time_column || is_taken(guesses, column) || unit.empty()) continue;
     if (convert_unit(unit, "1") && has_numbers(offer, column)) columns.push_back(column);
   }
   std::ranges::stable_sort(columns, std::greater{},
@@ -160,11 +160,10 @@ std::vector<std::size_t> plain_columns(const Offer& offer, const ChannelDescript
   return columns;
 }
 
-std::vector<ChannelGuess> guess_channels(const Offer& offer, const PlantDescription& plant,
-                                         const std::string& time_column) {
+std::vector<ChannelGuess> guess_channels(const Offer& offer, const PlantDescription& plant, std::size_t time_column) {
   std::vector<ChannelGuess> all;
   for (std::size_t column = 0; column < offer.columns.size(); ++column) {
-    if (offer.columns[column].text == time_column) continue;
+    if (column == time_column) continue;
     for (const ChannelDescription& channel : plant.channels)
       if (const double score = score_of(offer, column, channel); score > kEnough)
         all.push_back({channel.name, column, unit_for(offer.columns[column], channel), score, true});
@@ -185,7 +184,7 @@ std::vector<ChannelGuess> guess_channels(const Offer& offer, const PlantDescript
   return taken;
 }
 
-const PlantDescription& guess_plant(const Offer& offer, const std::string& time_column) {
+const PlantDescription& guess_plant(const Offer& offer, std::size_t time_column) {
   const PlantDescription* best = &all_plants().front();
   double most = 0.0;
   for (const PlantDescription& plant : all_plants()) {

@@ -24,21 +24,20 @@ struct ChannelGuess {
 
 /// Columns in a unit of the channel that no guess has taken, whatever they are called; without `time_column`.
 [[nodiscard]] std::vector<std::size_t> columns_of_unit(const Offer& offer, const ChannelDescription& channel,
-                                                       const std::string& time_column,
+                                                       std::size_t time_column,
                                                        const std::vector<ChannelGuess>& guesses);
 
 /// Columns of plain numbers, counts or percent, that no guess has taken: those first whose name is the channel's or its
 /// quantity's.
 [[nodiscard]] std::vector<std::size_t> plain_columns(const Offer& offer, const ChannelDescription& channel,
-                                                     const std::string& time_column,
-                                                     const std::vector<ChannelGuess>& guesses);
+                                                     std::size_t time_column, const std::vector<ChannelGuess>& guesses);
 
 /// Each channel and each column at most once, the most likely first taken; then those that only their unit tells, with
 /// score 0. Without `time_column`.
 [[nodiscard]] std::vector<ChannelGuess> guess_channels(const Offer& offer, const PlantDescription& plant,
-                                                       const std::string& time_column);
+                                                       std::size_t time_column);
 
 /// The plant of all that there are which the most speaks for.
-[[nodiscard]] const PlantDescription& guess_plant(const Offer& offer, const std::string& time_column);
+[[nodiscard]] const PlantDescription& guess_plant(const Offer& offer, std::size_t time_column);
 
 }  // namespace sealwatch::cli

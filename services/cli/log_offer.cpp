@@ -88,7 +88,7 @@ std::string unit_of_time(const OfferedColumn& column) {
   return "";
 }
 
-std::optional<std::size_t> time_column(const Offer& offer) {
+std::optional<std::size_t> likely_time_column(const Offer& offer) {
   static const std::set<std::string> kNames = {"time",       "t",        "timestamp", "zeit", "date",
                                                "time stamp", "datetime", "date/time", "datum"};
   const auto first = [&](const auto& is_one) -> std::optional<std::size_t> {
@@ -142,9 +142,16 @@ Result<Offer> offer_of(const std::string& file, const LogLayout& given) {
   return fail(std::move(error));
 }
 
+std::string name_of_column(const Offer& offer, std::size_t column) {
+  const std::string& text = offer.columns[column].text;
+  return std::ranges::count(offer.columns, text, &OfferedColumn::text) > 1 ? place_name(column) : text;
+}
+
+std::size_t time_column(const Offer& offer) { return likely_time_column(offer).value_or(0); }
+
 ColumnMapping guess_time(const Offer& offer) {
-  const std::size_t at = time_column(offer).value_or(0);
-  return {.column = offer.columns[at].text, .unit = time_unit(offer, at)};
+  const std::size_t at = time_column(offer);
+  return {.column = name_of_column(offer, at), .unit = time_unit(offer, at)};
 }
 
 }  // namespace sealwatch::cli

@@ -24,7 +24,11 @@ struct Offer {
 /// Whether all cells of a column that hold a value are numbers, and there are any.
 [[nodiscard]] bool has_numbers(const Offer& offer, std::size_t column);
 
+/// Its header cell; its place where another column has the same.
+[[nodiscard]] std::string name_of_column(const Offer& offer, std::size_t column);
+
 /// The column called time, t, Timestamp, Zeit or Date; else the first whose cells are times; else the first that rises.
+[[nodiscard]] std::size_t time_column(const Offer& offer);
 [[nodiscard]] ColumnMapping guess_time(const Offer& offer);
 
 }  // namespace sealwatch::cli

@@ -92,9 +92,12 @@ void print_json(const Heard& heard) {
   std::printf("%s\n", result.dump(1).c_str());
 }
 
-void print_text(const Heard& heard, const std::vector<std::string>& configured) {
+void print_text(const Heard& heard, const std::vector<std::string>& configured, double seconds) {
   if (heard.services.none()) {
-    std::printf("no service is running in this domain (start them with `sealwatch up`)\n");
+    std::printf(
+        "no service is running in this domain, or none was heard in %g s (start them with `sealwatch up`; on a busy "
+        "machine, listen longer: --seconds %g)\n",
+        seconds, 4.0 * seconds);
   } else {
     for (const auto& service : heard.services.list(ServicesHeard::Clock::now()))
       std::printf("%s\n", one_line(service).c_str());
@@ -140,7 +143,7 @@ int run_status(const StatusOptions& options) {
     for (const BusItem& item : session->bus->receive(std::chrono::milliseconds(100))) heard.take(item);
   std::vector<std::string> configured;
   for (const AssetConfig& asset : session->configuration.assets) configured.push_back(asset.asset_id);
-  options.json ? print_json(heard) : print_text(heard, configured);
+  options.json ? print_json(heard) : print_text(heard, configured, options.seconds);
   const auto listened = ServicesHeard::Clock::now();
   const bool well = !heard.services.none() && heard.services.all_well(listened) &&
                     !is_blind(alarms_of(heard.services.list(listened)), now());

@@ -14,6 +14,8 @@ struct ColumnMapping {
   std::string unit;  ///< "": as the header says, else SI. Of `time` also "iso8601", "excel" or a pattern "%d.%m.%Y %T"
   double scale = 1.0;   ///< [unit / 1] of one count
   double offset = 0.0;  ///< [unit]
+  /// Scale or offset are said, if only as 1 and 0: the unit is then that of the scaled number, not the log's.
+  bool is_scaled = false;
   bool operator==(const ColumnMapping&) const = default;
 };
 

@@ -31,6 +31,29 @@ std::optional<std::int64_t> fraction_of_a_second(std::string_view text) {
   return text.size() > 1 ? std::optional(value) : std::nullopt;
 }
 
+bool is_digit(char letter) { return letter >= '0' && letter <= '9'; }
+
+/// The fraction of a second that stands before the end of the time, "03:00:00.25 AM", taken out of `text`: strptime does
+/// not know it.
+std::int64_t take_inner_fraction(std::string& text) {
+  for (std::size_t at = 3; at + 1 < text.size(); ++at) {
+    const bool is_sign = text[at] == '.' || text[at] == ',';
+    if (!is_sign || text[at - 3] != ':' || !is_digit(text[at - 2]) || !is_digit(text[at - 1])) continue;
+    const std::size_t end = std::min(text.find_first_not_of("0123456789", at + 1), text.size());
+    const auto fraction = fraction_of_a_second(std::string_view(text).substr(at, end - at));
+    if (fraction) text.erase(at, end - at);
+    return fraction.value_or(0);
+  }
+  return 0;
+}
+
+/// "03:00", "12.04.2031 03:00:00": digits on both sides of a colon.
+bool is_clock(std::string_view cell) {
+  for (std::size_t at = 1; at + 1 < cell.size(); ++at)
+    if (cell[at] == ':' && is_digit(cell[at - 1]) && is_digit(cell[at + 1])) return true;
+  return false;
+}
+
 Result<UtcTime> from_excel(double days) {
   if (!(days >= 1.0 && days <= 120000.0))  // the years 1900 to 2228
     return fail("must be a day number as spreadsheets count them, 45000.5 for instance");
@@ -83,7 +106,9 @@ Result<double> parse_number(std::string_view text, char decimal) {
 }
 
 Result<UtcTime> parse_pattern(std::string_view cell, const std::string& pattern) {
-  const std::string text(trim(cell));
+  std::string text(trim(cell));
+  const bool ends_in_seconds = pattern.ends_with("%S") || pattern.ends_with("%T");
+  const std::int64_t inner = ends_in_seconds ? 0 : take_inner_fraction(text);
   std::tm parts{};
   parts.tm_mday = 1;  // of a pattern without a date: 1970-01-01
   parts.tm_year = 70;
@@ -92,7 +117,7 @@ Result<UtcTime> parse_pattern(std::string_view cell, const std::string& pattern)
   if (!fraction) return fail("must be a time as " + pattern + " describes it");
   if (parts.tm_year < -200 || parts.tm_year > 350) return fail("must be a time of the years 1700 to 2250");
   const std::int64_t seconds = timegm(&parts) - parts.tm_gmtoff;
-  return UtcTime{seconds * kNanoseconds + *fraction};
+  return UtcTime{seconds * kNanoseconds + inner + *fraction};
 }
 
 Result<TimeFormat> TimeFormat::of(std::string_view unit) {
@@ -129,6 +154,9 @@ Result<UtcTime> TimeFormat::moment(std::string_view cell, char decimal) const {
 Result<double> TimeFormat::seconds(std::string_view cell, char decimal) {
   if (kind_ == Kind::number) {
     const Result<double> number = parse_number(cell, decimal);
+    if (!number && is_clock(cell))
+      return fail(number.error().rule,
+                  "a clock or a date needs its form as unit in the map: iso8601, or a pattern as '%d.%m.%Y %H:%M:%S'");
     return number ? Result<double>(to_s_.to_si(*number)) : number;
   }
   const Result<UtcTime> time = moment(cell, decimal);

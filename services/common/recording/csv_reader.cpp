@@ -2,22 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "services/common/recording/cells.hpp"
 #include "services/common/recording/csv_rows.hpp"
+#include "services/common/recording/last_number.hpp"
 #include "services/common/recording/recording_file.hpp"
 #include "services/common/recording/repeated_times.hpp"
 #include "services/common/text/format.hpp"
 
 namespace sealwatch {
 namespace {
-
-/// Number of characters after the decimal point, exponent included.
-std::size_t decimals(std::string_view number) {
-  const std::size_t point = number.rfind('.');
-  return point == std::string_view::npos ? 0 : number.size() - point - 1;
-}
 
 /// Its byte order mark, or a NUL beside the first letter (RFC 4180 knows neither).
 bool is_utf16(std::string_view first_cell) {
@@ -95,14 +89,9 @@ class CsvReader {
                  repeats ? kRepeatAdvice : "time must increase from row to row: sort the rows"));
   }
 
-  /// Tells a cut-off number from a missing last line break (see the header).
   Status check_last_row() {
-    const std::string_view number = trim(cells_.back());
-    if (!rows_.has_line_break() && values_[time_].size() > 1 && decimals(number) < fewest_decimals_)
-      return fail(error_in(columns_.back().name, number, "the last line is cut off inside this number",
-                           "the file must end with a whole row"));
-    fewest_decimals_ = std::min(fewest_decimals_, decimals(number));
-    return {};
+    if (!last_number_.is_cut(cells_.back(), '.', rows_.has_line_break())) return {};
+    return fail(error_in(columns_.back().name, trim(cells_.back()), kCutNumber, kWholeRow));
   }
 
   Error error_in(std::string_view column, std::string_view value, std::string rule, std::string advice = {}) const {
@@ -136,7 +125,7 @@ class CsvReader {
   bool jumps_;
   RepeatedTimes repeated_;
   std::size_t blank_row_ = 0;  ///< first blank row, 0: none yet
-  std::size_t fewest_decimals_ = std::numeric_limits<std::size_t>::max();
+  LastNumber last_number_;
 };
 
 }  // namespace

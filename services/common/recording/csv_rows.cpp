@@ -119,7 +119,7 @@ Result<bool> CsvRows::next(std::vector<std::string_view>& cells) {
   char* end = buffer_.data() + *row_end;
   has_line_break_ = *row_end != end_;
   begin_ = *row_end + (has_line_break_ ? 1 : 0);
-  if (end != begin && end[-1] == '\r') --end;
+  while (end != begin && end[-1] == '\r') --end;  // a text file written as text on Windows has two
   if (delimiter_ == ' ') end = single_blanks(begin, end);
   if (const Status split = split_row(begin, end, cells); !split) return fail(split.error());
   return true;

@@ -87,7 +87,7 @@ class Mapper {
 
   /// The map's unit against the log's. With a scale or an offset the map's is that of what they make of the numbers.
   Status compare_units(const std::string& channel, const OfferedColumn& column, const ColumnMapping& mapping) {
-    if (mapping.unit.empty() || mapping.scale != 1.0 || mapping.offset != 0.0) return {};
+    if (mapping.unit.empty() || mapping.is_scaled || mapping.scale != 1.0 || mapping.offset != 0.0) return {};
     const std::string si_unit = channel == "time" ? "s" : si_unit_of(channel);
     const Result<UnitConversion> wanted = convert_unit(mapping.unit, si_unit);
     if (!wanted) return {};  // a clock, or refused where it is converted

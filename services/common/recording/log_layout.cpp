@@ -53,30 +53,39 @@ std::size_t values_in(const std::vector<std::string>& row, char decimal) {
 
 bool is_blank(const std::string& cell) { return trim(cell).empty(); }
 
-/// Rows in which at least half of the cells that are not empty are numbers or times.
-bool is_row_of_values(const std::vector<std::string>& row, char decimal) {
+/// Preamble, too, has numbers and times here and there. A log of states and alarms has mostly texts.
+enum class Expected { mostly_values, mostly_texts };
+
+/// Rows in which at least half of the cells that are not empty are numbers or times; two, where texts are expected.
+bool is_row_of_values(const std::vector<std::string>& row, char decimal, Expected expected) {
   const auto filled = row.size() - static_cast<std::size_t>(std::ranges::count_if(row, is_blank));
-  return filled >= 2 && 2 * values_in(row, decimal) >= filled;
+  const std::size_t values = values_in(row, decimal);
+  return filled >= 2 && (2 * values >= filled || (expected == Expected::mostly_texts && values >= 2));
 }
 
 struct Reading {
   Rows rows;  ///< from the file's first
   char delimiter;
   char decimal;
+  Expected expected;
   std::size_t width = 0;  ///< the commonest number of cells among rows of values
   std::size_t values = 0;
 };
 
-Reading read_as(std::string_view head, char delimiter, char decimal) {
-  Reading reading{.rows = rows_of(head, delimiter, 1, kRowsLookedAt), .delimiter = delimiter, .decimal = decimal};
+Reading read_as(std::string_view head, char delimiter, char decimal, Expected expected) {
+  Reading reading{.rows = rows_of(head, delimiter, 1, kRowsLookedAt),
+                  .delimiter = delimiter,
+                  .decimal = decimal,
+                  .expected = expected};
   std::map<std::size_t, std::size_t> widths;
   for (const auto& row : reading.rows)
-    if (is_row_of_values(row, decimal)) ++widths[row.size()];
+    if (is_row_of_values(row, decimal, expected)) ++widths[row.size()];
   for (const auto& [width, count] : widths)  // of widths that are as common the largest: the other rows are cut
     if (reading.width == 0 || count >= widths[reading.width]) reading.width = width;
   if (widths.empty()) return reading;
   for (const auto& row : reading.rows)
-    if (row.size() == reading.width && is_row_of_values(row, decimal)) reading.values += values_in(row, decimal);
+    if (row.size() == reading.width && is_row_of_values(row, decimal, expected))
+      reading.values += values_in(row, decimal);
   return reading;
 }
 
@@ -92,7 +101,7 @@ bool has_quoted_decimals(std::string_view head) {
 }
 
 /// The best of all ways to read it; blanks only where nothing else makes a table.
-std::optional<Reading> best_reading(std::string_view head, const LogLayout& given) {
+std::optional<Reading> best_reading(std::string_view head, const LogLayout& given, Expected expected) {
   std::optional<Reading> best;
   for (const auto& [delimiter_name, delimiter] : kDelimiters)
     for (const auto& [decimal_name, decimal] : kDecimals) {
@@ -101,7 +110,7 @@ std::optional<Reading> best_reading(std::string_view head, const LogLayout& give
       const bool both = delimiter == ',' && decimal == ',';
       if (both && given.decimal.empty() && !has_quoted_decimals(head)) continue;
       if (delimiter == ' ' && given.delimiter.empty() && best) continue;
-      Reading reading = read_as(head, delimiter, decimal);
+      Reading reading = read_as(head, delimiter, decimal, expected);
       if (reading.width > 0 && (!best || reading.values > best->values)) best = std::move(reading);
     }
   return best;
@@ -143,12 +152,16 @@ void find_header(const Reading& reading, const LogLayout& given, FoundLayout& ou
   std::size_t above = filled_row(out.first_row - 1);
   out.units_row = static_cast<std::size_t>(given.units_row);
   const bool header_given = given.header_row > 0;
-  if (out.units_row == 0 && above > (header_given ? static_cast<std::size_t>(given.header_row) : 1) &&
-      row(above).size() > 1) {
-    const std::size_t names = filled_row(above - 1);
-    if (is_row_of_units(row(above), names > 0 ? row(names) : std::vector<std::string>(), reading.decimal))
-      out.units_row = above;
-  }
+  const std::size_t least = header_given ? static_cast<std::size_t>(given.header_row) : 1;
+  const auto are_units = [&](std::size_t number) {
+    if (number <= least || row(number).size() <= 1) return false;
+    const std::size_t names = filled_row(number - 1);
+    return is_row_of_units(row(number), names > 0 ? row(names) : std::vector<std::string>(), reading.decimal);
+  };
+  if (out.units_row == 0 && are_units(above)) out.units_row = above;
+  const std::size_t next = above > 1 ? filled_row(above - 1) : 0, names = next > 1 ? filled_row(next - 1) : 0;
+  const bool is_below_units = names > 0 && row(next).size() == reading.width && row(names).size() == reading.width;
+  if (out.units_row == 0 && is_below_units && are_units(next)) out.units_row = above = next;  // a remark on each column
   if (out.units_row == above && above > 0) above = filled_row(above - 1);
   out.header_row = header_given ? static_cast<std::size_t>(given.header_row) : 0;
   if (!header_given && above > 0 && 2 * row(above).size() > reading.width) out.header_row = above;
@@ -172,6 +185,22 @@ std::size_t opening_of(std::string_view cell, char open, char close) {
 
 }  // namespace
 
+namespace {
+
+/// A line whose quotes do not close, as if they were letters: a row of the table stays one, and whoever reads it names
+/// the quote.
+std::vector<std::string> split_at(std::string_view line, char delimiter) {
+  std::vector<std::string> cells;
+  for (;;) {
+    const std::size_t end = std::min(line.find(delimiter), line.size());
+    cells.emplace_back(line.substr(0, end));
+    if (end == line.size()) return cells;
+    line.remove_prefix(end + 1);
+  }
+}
+
+}  // namespace
+
 Rows rows_of(std::string_view head, char delimiter, std::size_t first_row, std::size_t most) {
   Rows rows;
   std::size_t number = 0;
@@ -181,8 +210,9 @@ Rows rows_of(std::string_view head, char delimiter, std::size_t first_row, std::
       std::istringstream line{std::string(head.substr(0, length))};
       CsvRows cells(line, delimiter);
       std::vector<std::string_view> row;
-      const Result<bool> there = cells.next(row);  // of a line with stray quotes: no cells
-      rows.emplace_back(there ? std::vector<std::string>(row.begin(), row.end()) : std::vector<std::string>());
+      const Result<bool> there = cells.next(row);
+      rows.emplace_back(there ? std::vector<std::string>(row.begin(), row.end())
+                              : split_at(head.substr(0, length), delimiter));
     }
     head.remove_prefix(std::min(length + 1, head.size()));
   }
@@ -191,7 +221,8 @@ Rows rows_of(std::string_view head, char delimiter, std::size_t first_row, std::
 
 Result<FoundLayout> find_layout(std::string_view head, const LogLayout& given) {
   if (head.empty()) return fail(error_at("row 1, column 1", {}, "the file is empty"));
-  const std::optional<Reading> reading = best_reading(head, given);
+  std::optional<Reading> reading = best_reading(head, given, Expected::mostly_values);
+  if (!reading) reading = best_reading(head, given, Expected::mostly_texts);
   if (!reading)
     return fail(error_at("row 1, column 1", head.substr(0, head.find('\n')),
                          "no table of numbers follows within " + std::to_string(kRowsLookedAt) + " rows",
@@ -200,7 +231,8 @@ Result<FoundLayout> find_layout(std::string_view head, const LogLayout& given) {
   out.first_row = static_cast<std::size_t>(given.first_row);
   const auto least = static_cast<std::size_t>(std::max(given.header_row, given.units_row));
   for (std::size_t k = least; k < reading->rows.size() && out.first_row == 0; ++k)
-    if (reading->rows[k].size() == reading->width && is_row_of_values(reading->rows[k], reading->decimal))
+    if (reading->rows[k].size() == reading->width &&
+        is_row_of_values(reading->rows[k], reading->decimal, reading->expected))
       out.first_row = k + 1;
   if (out.first_row == 0 || out.first_row > reading->rows.size())
     return fail(error_at("row " + std::to_string(reading->rows.size()) + ", column 1", {},

@@ -5,6 +5,7 @@
 
 #include "services/common/recording/cells.hpp"
 #include "services/common/recording/csv_rows.hpp"
+#include "services/common/recording/last_number.hpp"
 #include "services/common/recording/log_columns.hpp"
 #include "services/common/recording/recording_file.hpp"
 #include "services/common/recording/repeated_times.hpp"
@@ -88,6 +89,16 @@ class LogReader {
     const std::vector<double>& time = values_[time_];
     const bool repeats = time.size() > 1 && time.back() == time[time.size() - 2];
     if (repeats && !repeated_.settle(values_, time_)) return fail(error_in(time_, "time repeats", "log a finer time"));
+    return check_last_cell(filled);
+  }
+
+  /// Of a column that is used, the time apart: a clock may leave out a fraction that is zero.
+  Status check_last_cell(std::size_t filled) {
+    for (std::size_t k = 0; k < mapped_.columns.size(); ++k) {
+      const bool is_last = k != time_ && mapped_.columns[k].index + 1 == filled && filled == cells_.size();
+      if (is_last && last_number_.is_cut(cell(k), layout_.decimal, rows_.has_line_break()))
+        return fail(error_in(k, kCutNumber, kWholeRow));
+    }
     return {};
   }
 
@@ -189,6 +200,7 @@ class LogReader {
   std::size_t time_ = 0;                     ///< index of time among the mapped columns
   std::size_t width_ = 0;                    ///< cells of the header
   RepeatedTimes repeated_;
+  LastNumber last_number_;
   double shift_s_ = 0.0;  ///< added to the log's time since it started anew
   std::size_t rows_read_ = 0;
   std::size_t first_row_ = 0;  ///< of the test that is being read
@@ -205,6 +217,9 @@ Result<FoundLayout> layout_of(std::istream& in, const LogLayout& given) {
   const bool whole = in.eof();
   in.clear();
   in.seekg(begin);
+  if (!whole && head.find('\n') == std::string::npos)
+    return fail(error_at("row 1, column 1", {}, "the row is longer than " + std::to_string(kHead_bytes) + " bytes",
+                         "a log has rows that end in a line feed"));
   if (!whole) head.resize(head.rfind('\n') + 1);  // the last row may be cut
   if (head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF"))
     return fail(error_at("row 1, column 1", {}, "the file is UTF-16 text", "save it as UTF-8"));

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "sealwatch/core/longest_id.hpp"
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/core/visible_text.hpp"
 
@@ -94,6 +95,8 @@ Status read_name(const KeyValue& item, std::string& target) {
   if (name.empty()) return fail(key_error(item, "must not be empty", "leave the key out where there is none"));
   if (!is_visible(name))
     return fail(key_error(item, "must not have line breaks, other control characters or invisible ones"));
+  if (name.size() > kLongestId)
+    return fail(key_error(item, "must not be longer than " + std::to_string(kLongestId) + " bytes"));
   target = name;
   return {};
 }

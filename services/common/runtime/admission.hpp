@@ -28,13 +28,13 @@
 #include <string>
 #include <vector>
 
+#include "sealwatch/core/longest_id.hpp"
 #include "sealwatch/core/time.hpp"
 #include "sealwatch/message/retracted_tests.hpp"
 #include "sealwatch/message/topics.hpp"
 
 namespace sealwatch {
 
-inline constexpr std::size_t kLongestId = 500;  ///< bytes
 inline constexpr std::size_t kLongestRemark = 4000;
 inline constexpr std::size_t kMostUnknownAssets = 64;
 /// Of an asset. Each is answered by every layer, with a forecast and an advice that are the same as before: more wait in

@@ -47,6 +47,7 @@ void read_column(YamlMap& channels, const std::string& channel, ColumnMapping& m
     YamlMap map = channels.inside(*node, channel);
     map.read("column", mapping.column);
     map.read("unit", mapping.unit);
+    mapping.is_scaled = map.has("scale") || map.has("offset");
     map.read("scale", mapping.scale);
     map.read("offset", mapping.offset);
     map.finish();
@@ -78,7 +79,8 @@ void write_columns(YAML::Emitter& out, const ChannelMap& map) {
     out << YAML::Key << channel << YAML::Value << YAML::Flow << YAML::BeginMap;
     out << YAML::Key << "column" << YAML::Value << YAML::DoubleQuoted << mapping.column;
     if (!mapping.unit.empty()) out << YAML::Key << "unit" << YAML::Value << YAML::DoubleQuoted << mapping.unit;
-    if (mapping.scale != 1.0) out << YAML::Key << "scale" << YAML::Value << text::exact(mapping.scale);
+    if (mapping.is_scaled || mapping.scale != 1.0)
+      out << YAML::Key << "scale" << YAML::Value << text::exact(mapping.scale);
     if (mapping.offset != 0.0) out << YAML::Key << "offset" << YAML::Value << text::exact(mapping.offset);
     out << YAML::EndMap;
   }

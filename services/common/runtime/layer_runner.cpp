@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "sealwatch/message/id_part.hpp"
+#include "sealwatch/message/outside.hpp"
 #include "services/common/runtime/confirmed_positions.hpp"
 #include "services/common/runtime/identity.hpp"
 #include "services/common/runtime/log.hpp"
@@ -96,7 +97,8 @@ Status LayerRunner::start() {
   status.started_ns = started_ns_;
   status.process_id = ::getpid();
   status.state = forgotten_.empty() ? "running" : kRestoring;
-  status.written = written();  // the first heartbeat tells of acts, which others compare with their own record
+  status.written = written();    // the first heartbeat tells of acts, which others compare with their own record,
+  status.received = received();  // and of what was read, which they compare with their own journal
   alarms_.tell(status);
   Heartbeat::Options beats = options_.heartbeat;
   const bool takes_samples = std::ranges::find(kind_->inputs(), Topic::raw_samples) != kind_->inputs().end();
@@ -307,6 +309,8 @@ Status LayerRunner::take(Message message, const ActRecord* record) {
       note_refused_test(*raw, *refused);
       return {};
     }
+    const bool is_said_here = record == nullptr && is_an_act(message) && is_listened_to(message);
+    if (is_said_here && !keeps_refused(message, *refused)) return {};
     if (may_be_fetched_later(message)) {
       (void)note_act(message, refused, InputState::consumed, record);
       return {};
@@ -522,13 +526,26 @@ std::vector<StreamPosition> LayerRunner::written() const {
   return written;
 }
 
-void LayerRunner::report_progress() {
-  if (!heartbeat_) return;  // the past is still being restored
+/// Of services also what is silent: who lost its journal goes on under another name, and learns here what it has lost.
+std::vector<StreamPosition> LayerRunner::received() const {
+  constexpr std::size_t kMostSilent = 64;
   std::vector<StreamPosition> received;
-  for (const Key& stream : reader_->active()) {
+  const std::vector<Key> active = reader_->active();
+  for (const Key& stream : active) {
     const auto position = committed_.find(stream);
     received.push_back({stream.first, stream.second, position == committed_.end() ? 0 : position->second});
   }
+  for (const auto& [stream, position] : committed_) {
+    if (received.size() >= active.size() + kMostSilent) break;
+    if (is_of_a_service(stream.first) && std::ranges::find(active, stream) == active.end())
+      received.push_back({stream.first, stream.second, position});
+  }
+  return received;
+}
+
+void LayerRunner::report_progress() {
+  if (!heartbeat_) return;  // the past is still being restored
+  std::vector<StreamPosition> received = this->received();
   heartbeat_->update([&](ServiceStatus& status) {
     // What a layer keeps as its memory waits for nothing; nor does what belongs to a test that is set aside elsewhere.
     const std::uint64_t open = journal_.open_inputs();

@@ -37,6 +37,7 @@
 #include "services/common/runtime/latest_outputs.hpp"
 #include "services/common/runtime/outbox.hpp"
 #include "services/common/runtime/recalled_alarm_acts.hpp"
+#include "services/common/runtime/refused_acts.hpp"
 #include "services/common/runtime/resend_queue.hpp"
 #include "services/common/runtime/retention.hpp"
 #include "services/common/runtime/stranger_watch.hpp"
@@ -175,6 +176,7 @@ class LayerRunner {
   [[nodiscard]] std::vector<StreamPosition> position_of_acts() const;
   /// How far the own streams go, and the record of acts.
   [[nodiscard]] std::vector<StreamPosition> written() const;
+  [[nodiscard]] std::vector<StreamPosition> received() const;
   void report_progress();
 
   // The past (layer_runner_past.cpp).
@@ -248,6 +250,8 @@ class LayerRunner {
   /// Writes down who said it, and what becomes of it: `state` for what no person said.
   [[nodiscard]] InputState note_act(const Message& message, const std::optional<std::string>& refused, InputState state,
                                     const ActRecord* record);
+  /// Notes that an act was refused; whether it is kept. Of the others the record says how many there are.
+  [[nodiscard]] bool keeps_refused(const Message& act, const std::string& refused);
   [[nodiscard]] std::optional<std::string> refusal_of_ahead(const Message& message) const;
   /// Whether an act is refused because what it means is not known here: where a neighbour knows it, it comes again.
   [[nodiscard]] bool may_be_fetched_later(const Message& message) const;
@@ -354,9 +358,10 @@ class LayerRunner {
   std::set<std::string> awaits_quiet_;      ///< of those assets, the ones with acts that were fetched back
   std::set<std::string> heard_of_;          ///< of those assets, the ones of which something new is known
   std::size_t acts_on_unknown_assets_ = 0;  ///< recorded while the alarm of them stands
-  std::vector<OperatorAct> acts_;           ///< of the running batch
-  std::vector<Message> records_;            ///< of the running batch: own act_records
-  bool waits_for_acts_ = false;             ///< the journal is new, and acts come before all else
+  RefusedActs refused_acts_;
+  std::vector<OperatorAct> acts_;  ///< of the running batch
+  std::vector<Message> records_;   ///< of the running batch: own act_records
+  bool waits_for_acts_ = false;    ///< the journal is new, and acts come before all else
   std::deque<std::pair<Message, std::chrono::steady_clock::time_point>> told_records_;  ///< not yet in line, since when
   std::vector<Message> said_meanwhile_;            ///< by people, to this service itself
   std::map<std::string, std::string> standing_;    ///< advisory_id of the advice that stands, by asset

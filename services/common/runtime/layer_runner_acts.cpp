@@ -4,7 +4,6 @@
 #include <cctype>
 
 #include "sealwatch/core/visible_text.hpp"
-#include "sealwatch/message/alarm_acts.hpp"
 #include "sealwatch/message/confirmation.hpp"
 #include "services/common/runtime/layer_runner.hpp"
 #include "services/common/runtime/log.hpp"
@@ -111,13 +110,24 @@ std::optional<std::string> LayerRunner::refusal_of_confirmation(const Message& m
   return std::nullopt;
 }
 
-/// What says that somebody has seen something, or sets it aside, says nothing where it does not say who.
+/// Somebody stands for each act: a record of what nobody did says nothing.
 std::optional<std::string> LayerRunner::refusal_of_nameless(const Message& message) {
-  const auto* event = std::get_if<MaintenanceEvent>(&message);
-  const bool needs_a_name =
-      std::holds_alternative<Acknowledgement>(message) || (event != nullptr && is_alarm_act(event->kind));
-  if (!needs_a_name || !plain(who_said(message)).empty()) return std::nullopt;
+  if (!is_an_act(message) || !plain(who_said(message)).empty()) return std::nullopt;
   return "it does not say who; give a name";
+}
+
+bool LayerRunner::keeps_refused(const Message& act, const std::string& refused) {
+  if (refused_acts_.admits(std::chrono::steady_clock::now())) return true;
+  if (!refused_acts_.is_to_be_told()) return false;
+  const std::string count = std::to_string(refused_acts_.left_out());
+  acts_.push_back({.at = clock_.now(),
+                   .kind = "refused_acts",
+                   .asset_id = asset_of(act),
+                   .who = {},
+                   .subject = {},
+                   .text = count + " more within a day, left out here",
+                   .outcome = refused});
+  return false;
 }
 
 bool LayerRunner::waits_for_second(const Message& message) const {

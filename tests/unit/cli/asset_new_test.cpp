@@ -86,6 +86,26 @@ TEST_F(AssetNew, OfTwoColumnsWithOneHeaderThePlaceIsWritten) {
   EXPECT_EQ(asset->channel_map.columns.at("position").column, "column 3");
 }
 
+// Logs of several devices have a time for each.
+TEST_F(AssetNew, OfTwoTimesWithOneHeaderThePlaceIsWritten) {
+  ASSERT_EQ(make("Time,Motor voltage [V],Time,Position [mm]\n0.0,1,0.0,60\n0.5,1,0.5,59\n"), kOk);
+  const Result<AssetConfig> asset = load_asset(path("a.yaml"));
+  ASSERT_TRUE(asset) << asset.error().describe();
+  EXPECT_EQ(asset->channel_map.columns.at("time").column, "column 1");
+  EXPECT_EQ(asset->channel_map.columns.at("position").column, "Position [mm]");
+}
+
+TEST_F(AssetNew, AFractionOfASecondMayStandBeforeTheHalfOfTheDay) {
+  ASSERT_EQ(make("Time,Motor voltage [V],Position [mm]\n04/25/2031 11:59:59.750000 AM,1,60\n"
+                 "04/25/2031 12:00:00.250000 PM,1,59\n"),
+            kOk);
+  const Result<AssetConfig> asset = load_asset(path("a.yaml"));
+  ASSERT_TRUE(asset) << asset.error().describe();
+  const auto recording = read_recording(path("log.csv"), **find_plant(asset->model), asset->channel_map);
+  ASSERT_TRUE(recording) << recording.error().describe();
+  EXPECT_NEAR(recording->samples.time_s.back(), 0.5, 1e-9);
+}
+
 TEST_F(AssetNew, OfALogWithManyColumnsSomeAreNamed) {
   std::string header = "time", row = "0";
   for (int k = 0; k < 200; ++k) header += ",Ei" + std::to_string(k) + " [mm/kg]", row += ",1";

@@ -44,7 +44,7 @@ TEST(ReplaySource, WhatTheServicesWouldRefuseIsRefused) {
   EXPECT_THAT(refusal_of("start_time: 2008-06-01T00:00:00Z\n"),
               ::testing::HasSubstr("lies before the asset was commissioned"));
   EXPECT_THAT(refusal_of("start_time: 2009-06-01T00:00:00Z\nrecording_id: \"" + std::string(5000, 'x') + "\"\n"),
-              ::testing::HasSubstr("recording_id is longer than 500 bytes"));
+              ::testing::HasSubstr("line 3, key recording_id"));
 }
 
 }  // namespace

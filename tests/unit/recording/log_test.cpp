@@ -448,6 +448,54 @@ TEST_F(ForeignLog, ATestOfOneSampleIsNamed) {
       HasSubstr("log.csv: row 4, column time: the test that begins here has one sample alone; take the row out"));
 }
 
+// A remark on each column, as loggers write how it was averaged, is not the header.
+TEST_F(ForeignLog, ARowOfRemarksBelowTheUnitsIsNoHeader) {
+  ChannelMap map = kGermanMap;
+  map.columns["pressure_a"].unit = {};
+  expect_two_rows(read(
+      "Zeit;Druck A;Weg\n-;barg;mm\nroh;roh;Mittel\n2031-04-12T03:00:00;1;60\n2031-04-12T03:00:00.5;1,5;59\n", map));
+}
+
+// Its first sample would be lost, and nobody would know.
+TEST_F(ForeignLog, AFirstRowWithAQuoteThatDoesNotCloseIsRefused) {
+  EXPECT_THAT(error_of("Zeit;Druck A;Weg [mm]\n2031-04-12T03:00:00;1;\"60\n2031-04-12T03:00:00.5;1,5;59\n", kGermanMap),
+              AllOf(HasSubstr("row 2, column 3"), HasSubstr("no closing quote")));
+}
+
+TEST_F(ForeignLog, ALogThatIsMostlyTextsIsATableAllTheSame) {
+  ChannelMap map = kGermanMap;
+  map.columns["pressure_a"].unit = "barg";
+  expect_two_rows(
+      read("Zeit;A1;A2;A3;A4;Druck A;Weg [mm]\n2031-04-12T03:00:00;ok;ok;auf;zu;1;60\n"
+           "2031-04-12T03:00:00.5;ok;ok;auf;zu;1,5;59\n",
+           map));
+}
+
+TEST_F(ForeignLog, ALastLineThatIsCutInsideANumberIsRefused) {
+  const std::string whole = "Zeit;Druck A;Weg [mm]\n2031-04-12T03:00:00;1;60,00\n2031-04-12T03:00:00.5;1,5;59,";
+  expect_two_rows(read(whole + "00", kGermanMap));
+  EXPECT_THAT(error_of(whole, kGermanMap), HasSubstr("row 3, column 3 (Weg [mm], channel position): '59,'"));
+  EXPECT_THAT(error_of(whole + "0", kGermanMap), HasSubstr("the last line is cut off inside this number"));
+}
+
+// Text that was written as text on Windows has a carriage return too many.
+TEST_F(ForeignLog, LinesMayEndInTwoCarriageReturns) {
+  expect_two_rows(
+      read("Zeit;Druck A;Weg [mm]\r\r\n2031-04-12T03:00:00;1;60\r\r\n2031-04-12T03:00:00.5;1,5;59\r\r\n", kGermanMap));
+}
+
+TEST_F(ForeignLog, AFirstRowWithoutAnEndIsNamed) {
+  EXPECT_THAT(error_of("Zeit;Druck A;" + std::string(500'000, 'x') + "\n1;2;3\n", kGermanMap),
+              HasSubstr("row 1, column 1: the row is longer than"));
+}
+
+// One count that is one micrometre: said, if only as 1, the scale makes the unit that of the scaled number.
+TEST_F(ForeignLog, AScaleOfOneIsAScale) {
+  ChannelMap map = kGermanMap;
+  map.columns["position"] = {.column = "Weg [counts]", .unit = "mm", .is_scaled = true};
+  expect_two_rows(read("Zeit;Druck A;Weg [counts]\n2031-04-12T03:00:00;1;60\n2031-04-12T03:00:00.5;1,5;59\n", map));
+}
+
 TEST_F(ForeignLog, WhatCannotBeUnderstoodIsNamedWithRowAndColumn) {
   EXPECT_THAT(error_of("Zeit;Druck B;Weg [mm]\n2031-04-12T03:00:00;1;60\n2031-04-12T03:00:01;1;60\n", kGermanMap),
               HasSubstr("row 1, channel pressure_a: 'Druck A': is not a column of this log; did you mean 'Druck B'?"));
@@ -464,6 +512,10 @@ TEST_F(ForeignLog, WhatCannotBeUnderstoodIsNamedWithRowAndColumn) {
   EXPECT_THAT(error_of("Druck A;Druck A;Weg\n1;2;3\n", kGermanMap), HasSubstr("stands over columns 1 and 2"));
   EXPECT_THAT(error_of("nothing but words\nand more\n", kGermanMap), HasSubstr("row 1, column 1"));
   EXPECT_THAT(error_of("", kGermanMap), HasSubstr("the file is empty"));
+  ChannelMap in_seconds = kGermanMap;
+  in_seconds.columns["time"].unit = "s";
+  EXPECT_THAT(error_of("Zeit;Druck A;Weg [mm]\n12. Okt 2031 03:00:00;1;60\n", in_seconds),
+              HasSubstr("must be a number; a clock or a date needs its form as unit in the map"));
   ChannelMap bad = kGermanMap;
   bad.columns["time"].unit = "fortnights per bar";
   EXPECT_THAT(error_of("Zeit;Druck A;Weg [mm]\n1;1;60\n2;1;60\n", bad), HasSubstr("time is iso8601, excel"));

@@ -79,6 +79,14 @@ TEST(SidecarText, IsOneDocument) {
   EXPECT_TRUE(parse_sidecar("---\ntest: pst\n...\n", test_plant()));
 }
 
+TEST(SidecarText, NamesAreNoLongerThanTopicsTakeThem) {
+  EXPECT_TRUE(parse_sidecar("recording_id: " + std::string(500, 'r') + "\n", test_plant()));
+  const auto result = parse_sidecar("recording_id: " + std::string(501, 'r') + "\n", test_plant());
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().describe(), HasSubstr("line 1, key recording_id"));
+  EXPECT_THAT(result.error().describe(), HasSubstr("must not be longer than 500 bytes"));
+}
+
 TEST(SidecarText, NamesAreNotEmptyAndOfOneLine) {
   for (const std::string key : {"asset_id", "recording_id"}) {
     const std::string place = "line 2, key " + key + ": ";

@@ -23,7 +23,7 @@ ChannelMap whole() {
   ChannelMap map;
   map.columns = {{"time", {.column = "Timestamp", .unit = "iso8601"}},
                  {"pressure_a", {.column = "PT-101 [psig]", .unit = {}}},
-                 {"position", {.column = "LVDT", .unit = "mm", .scale = 0.0122, .offset = -25.0}}};
+                 {"position", {.column = "LVDT", .unit = "mm", .scale = 0.0122, .offset = -25.0, .is_scaled = true}}};
   map.log = {"semicolon", "comma", 12, 13, 15, "split", "skip"};
   return map;
 }
@@ -39,6 +39,19 @@ TEST(ChannelMap, IsReadFromAFileOfItsOwnAndFromAnAssetFileAndWrittenBack) {
   const auto back = load_asset(place.write("b.yaml", asset_to_yaml(*asset)));
   ASSERT_TRUE(back) << back.error().describe();
   EXPECT_EQ(back->channel_map, whole());
+}
+
+TEST(ChannelMap, AScaleOfOneIsSaidAndWrittenBack) {
+  const YamlPlace place;
+  const auto asset = load_asset(place.write(
+      "a.yaml",
+      "asset_id: A\nmodel: eha\nchannels: {position: {column: LVDT, unit: mm, scale: 1}, flow: {column: Q}}\n"));
+  ASSERT_TRUE(asset) << asset.error().describe();
+  EXPECT_TRUE(asset->channel_map.columns.at("position").is_scaled);
+  EXPECT_FALSE(asset->channel_map.columns.at("flow").is_scaled);
+  const auto back = load_asset(place.write("b.yaml", asset_to_yaml(*asset)));
+  ASSERT_TRUE(back) << back.error().describe();
+  EXPECT_EQ(back->channel_map, asset->channel_map);
 }
 
 TEST(ChannelMap, IsTakenFromAnotherAssetFileAsWell) {

@@ -105,6 +105,37 @@ class TestsAndActsLayer final : public Layer {
   static constexpr std::array kOutputs = {Topic::advisory};
 };
 
+/// Whoever lost its journal while all were down goes on under another name, and must learn what it has lost.
+TEST_F(ActsTest, WhatWasReadOfASilentNeighbourIsToldAfterARestart) {
+  InMemoryBus listener(network_);
+  ASSERT_TRUE(listener.subscribe_service_topics());
+  const auto start_reader = [this] {
+    auto process = std::make_unique<Process>(
+        network_, [] { return std::make_unique<TestsAndActsLayer>(); }, place_.connection());
+    process->start();
+    return process;
+  };
+  auto process = start_reader();
+  HealthReport report;
+  report.asset_id = "A";
+  report.header = header("health_report/A-1", "A-1");
+  report.header.writer_id = "health_assessment-lost";
+  report.header.stream_sequence = 1;
+  say(*process, report);
+  process.reset();
+  (void)listener.receive(std::chrono::milliseconds(1), 1000);
+  process = start_reader();
+  std::vector<StreamPosition> received;
+  EXPECT_TRUE(step_until(
+      [&] {
+        for (const BusItem& item : listener.receive(std::chrono::milliseconds(5), 1000))
+          if (const auto* status = std::get_if<ServiceStatus>(&item)) received = status->received;
+        return !received.empty();
+      },
+      [&] { process->step(); }));
+  EXPECT_EQ(received, (std::vector<StreamPosition>{{"health_report", "health_assessment-lost", 1}}));
+}
+
 class EarlyRetractionTest : public ActsTest {
  protected:
   EarlyRetractionTest() {
@@ -447,6 +478,38 @@ TEST_F(ActsTest, WhatIsRefusedTakesNoIdFromWhatIsTrulySaid) {
   EXPECT_EQ(acts()[2].act.outcome, "taken");
   EXPECT_EQ(acts()[2].act.who, "J. Silva");
   EXPECT_THAT(process->outputs(), SizeIs(1));
+}
+
+/// Somebody stands for each act, whatever it is.
+TEST_F(ActsTest, WhatNobodySaidIsRefused) {
+  const auto process = start();
+  say(*process, replaced(" ", UtcTime{1'899'000'000'000'000'000}));
+  MaintenanceEvent retraction = replaced("", UtcTime{1'899'000'000'000'000'000});
+  retraction.kind = kTestRetracted;
+  retraction.header.message_id = retraction_id("A", kTestRetracted, "A-1", UtcTime{1'899'000'000'000'000'000});
+  say(*process, retraction);
+  ASSERT_THAT(acts(), SizeIs(2));
+  for (const AuditEntry& entry : acts()) EXPECT_THAT(entry.act.outcome, HasSubstr("does not say who"));
+  EXPECT_TRUE(process->outputs().empty());
+}
+
+/// A stranger never stops: the record says how often, hardly grows, and a person's act stands in it.
+TEST_F(ActsTest, WhatIsRefusedWithoutEndIsCounted) {
+  const auto process = start();
+  for (int k = 0; k < 64 + 100; ++k) {
+    Acknowledgement nameless = seen("");
+    nameless.remark = std::to_string(k);
+    EXPECT_TRUE(operator_.publish(nameless));
+    process->step();
+  }
+  say(*process, seen("J. Silva"));
+  const std::vector<AuditEntry> entries = acts();
+  ASSERT_THAT(entries, SizeIs(64 + 7 + 1)) << "at the 1st, 2nd, ..., 64th that is left out";
+  EXPECT_EQ(entries[70].act.kind, "refused_acts");
+  EXPECT_THAT(entries[70].act.text, HasSubstr("64 more"));
+  EXPECT_THAT(entries[70].act.outcome, HasSubstr("does not say who"));
+  EXPECT_EQ(entries[71].act.outcome, "taken");
+  EXPECT_FALSE(find_break("advisory_generation", entries));
 }
 
 TEST_F(ActsTest, OnUnknownAssetsAreRecordedAsRefusedAndDoNotFillTheRecord) {

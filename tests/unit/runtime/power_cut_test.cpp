@@ -38,6 +38,7 @@ Message replacement(int round) {
   MaintenanceEvent event;
   event.asset_id = "XT03-MV2";
   event.kind = "seal_replaced";
+  event.reported_by = "J. Silva";
   event.header = header(replacement_of_round(std::to_string(round)), "");
   event.header.event_time_known = true;
   event.header.event_time_ns = kReplaced.nanoseconds;

@@ -748,6 +748,7 @@ TEST_F(RunnerTest, RefusesAReplacementFromTheFutureUnlessTheTestsAreFromThereToo
     MaintenanceEvent report;
     report.asset_id = "A";
     report.kind = "seal_replaced";
+    report.reported_by = "J. Silva";
     report.header = header("maintenance_event/" + id, "");
     report.header.event_time_known = true;
     report.header.event_time_ns = time_ns;

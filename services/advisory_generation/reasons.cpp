@@ -4,6 +4,7 @@
 #include "sealwatch/message/worn_words.hpp"
 #include "services/advisory_generation/assessment.hpp"
 #include "services/common/text/numbers.hpp"
+#include "services/common/text/readable.hpp"
 #include "services/common/text/words.hpp"
 
 namespace sealwatch::advisory_generation {
@@ -14,7 +15,6 @@ using text::condition_in_percent;
 using text::in_months;
 using text::in_percent;
 using text::in_words;
-using text::three_digits;
 using text::with_unit;
 
 /// Below this a fault is proposed only because some fault must come first.
@@ -81,9 +81,10 @@ void add_forecast(std::vector<std::string>& reasons, const RemainingLife& life) 
 
 void add_condition(std::vector<std::string>& reasons, const LeakageEstimate& leakage, const RemainingLife& life) {
   if (leakage.estimated) {
-    std::string text = (is_of_seal(leakage) ? "leakage resistance " : "") + worn_parameter(leakage) + " = " +
-                       three_digits(leakage.resistance_Pa_s_m3) + " +- " +
-                       three_digits(leakage.resistance_std_Pa_s_m3) + worn_unit(leakage) + " (by sensor noise alone)";
+    std::string text =
+        (is_of_seal(leakage) ? "leakage resistance " : "") + worn_parameter(leakage) + " = " +
+        text::readable_with_error(leakage.resistance_Pa_s_m3, leakage.resistance_std_Pa_s_m3, worn_unit(leakage)) +
+        " (by sensor noise alone)";
     if (leakage.condition_known)
       text = worn_condition(leakage) + " " + condition_in_percent(leakage.condition) + limit_of(life) + ", " + text;
     reasons.push_back(name_of_test(leakage.header) + kMeasured + text);
@@ -104,8 +105,8 @@ void add_health(std::vector<std::string>& reasons, const HealthReport& health, c
   std::string text = health.health_grade_known ? "health grade " + as_condition(health.health_grade)
                                                : "health grade not known: no test has measured the wear";
   if (health.trend_known)
-    text += ", " + as_condition(health.health_trend_per_year) + " +- " +
-            as_condition(health.health_trend_std_per_year) + " a year";
+    text += ", " + as_condition(health.health_trend_per_year) + " ± " + as_condition(health.health_trend_std_per_year) +
+            " a year";
   if (!health.ambiguity_group.empty()) {
     const ProposedFault& first = health.ambiguity_group.front();
     if (first.likelihood < kWorthNaming)

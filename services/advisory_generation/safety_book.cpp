@@ -4,6 +4,7 @@
 #include "sealwatch/message/worn_words.hpp"
 #include "sealwatch/model/plant_description.hpp"
 #include "services/common/text/numbers.hpp"
+#include "services/common/text/readable.hpp"
 
 namespace sealwatch::advisory_generation {
 namespace {
@@ -95,7 +96,7 @@ std::vector<std::string> in_words(const std::vector<DecisionOption>& decision, c
   }
   if (book.failure_probability_known)
     words.push_back(std::string("average probability of failure on demand ")
-                        .append(text::three_digits(book.failure_probability_on_demand)));
+                        .append(text::in_sentence(book.failure_probability_on_demand)));
   if (book.full_stroke_known && book.full_stroke_overdue_months > 0.0)
     words.push_back(std::string("the full stroke test was due on ").append(format_date({book.full_stroke_due_ns})));
   return words;

@@ -84,7 +84,7 @@ Error AlarmsListed::unknown(const std::string& asset_id, const std::string& id) 
                .value = id,
                .rule = std::string("is not an alarm of ").append(asset.empty() ? "no asset" : asset),
                .advice = !heard          ? "advisory_generation, which keeps the alarms, is not heard"
-                         : known.empty() ? "there is none; `sealwatch status --json` shows all, with their ids"
+                         : known.empty() ? "it has none; `sealwatch status --json` shows all alarms with their ids"
                                          : suggest(id, known)};
 }
 

@@ -291,14 +291,13 @@ void print_not_found(const Understood& log, const std::string& file) {
     const std::string name = channel.name + " [" + channel.unit + "]";
     const std::string may_be = may_be_it(log, channel);
     if (may_be.empty())
-      absent.append(absent.empty() ? "" : ", ").append(name).append(channel.input ? ", an input" : "");
+      absent.append(absent.empty() ? "" : ", ").append(name).append(channel.input ? " (input)" : "");
     else
       std::printf("  %s %s not found in %s: %s\n", channel.input ? "input" : "output", name.c_str(), file.c_str(),
                   may_be.c_str());
   }
   if (!absent.empty())
-    std::printf("  not found in %s, as no column has the unit: %s; map by hand what is there\n", file.c_str(),
-                absent.c_str());
+    std::printf("  no column of %s has the unit of: %s; map by hand what the log has\n", file.c_str(), absent.c_str());
 }
 
 void print_table(const Understood& log, const std::string& file) {
@@ -452,8 +451,8 @@ int run_asset_new(const AssetNewOptions& options) {
   print_table(*log, options.log);
   const std::string id = asset_id_of(*log, options);
   const char* from = !options.asset_id.empty() ? ""
-                     : !log->asset_id.empty()  ? " by the log's sidecar"
-                                               : " by the log's name";
+                     : !log->asset_id.empty()  ? ", from the log's sidecar"
+                                               : ", from the log's name";
   std::printf("  asset id: %s%s; change it under asset_id in %s, or give --id\n", id.c_str(), from,
               options.file.c_str());
   std::printf(

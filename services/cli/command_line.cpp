@@ -37,6 +37,8 @@ int CommandLine::run(int argc, char** argv) {
   try {
     app_.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    // A misspelt option comes before what is missing because of it.
+    if (error.get_exit_code() != 0 && tells_unknown_option()) return kBadInput;
     return app_.exit(error) == 0 ? kOk : kBadInput;
   }
   return chosen_();
@@ -87,6 +89,21 @@ std::vector<std::string> CommandLine::commands() const {
   std::vector<std::string> names;
   for (const CLI::App* subcommand : app_.get_subcommands(nullptr)) names.push_back(subcommand->get_name());
   return names;
+}
+
+bool CommandLine::tells_unknown_option() const {
+  const CLI::App* command = &app_;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  const std::vector<std::string> left = command->remaining();
+  const auto option = std::ranges::find_if(left, [](const std::string& one) { return one.starts_with("--"); });
+  if (option == left.end() || *option == "--") return false;
+  std::vector<std::string> known;
+  for (const CLI::Option* one : command->get_options())
+    for (const std::string& name : one->get_lnames()) known.push_back("--" + name);
+  const std::string given = option->substr(0, option->find('='));
+  complain(
+      Error{.file = {}, .place = {}, .value = given, .rule = "is not an option here", .advice = suggest(given, known)});
+  return true;
 }
 
 int CommandLine::unknown(const std::string& name) const {

@@ -40,6 +40,8 @@ class CommandLine {
  private:
   [[nodiscard]] std::vector<std::string> commands() const;
   [[nodiscard]] int unknown(const std::string& name) const;
+  /// Whether an option that was given is none of its command's; says so.
+  [[nodiscard]] bool tells_unknown_option() const;
 
   CLI::App app_;
   std::string group_;

@@ -72,8 +72,9 @@ void add_fit(CommandLine& line) {
   CommandLine::add_map(fit, options->map_file);
   fit->add_option("--model", options->model,
                   "cylinder_circuit, or the asset's whole model (default: the best the channels allow)");
-  fit->add_option("--time-limit", options->time_limit_s,
-                  "seconds after which the best answer so far is given, as not converged (default: none)")
+  fit->add_option(
+         "--time-limit", options->time_limit_s,
+         "stop after this many seconds with the best answer so far, marked as not converged (default: no limit)")
       ->check(CLI::PositiveNumber);
   fit->add_flag("--json", options->json, "machine-readable result (schema sealwatch.fit/1)");
 }
@@ -88,7 +89,7 @@ void add_validate(CommandLine& line) {
   CommandLine::one_means(validate, "simulation and recording differ");
   validate->add_option("--asset", options->asset_file, "asset file")->check(an_asset_file, "FILE");
   validate->add_option("recordings", options->recordings, "recordings (CSV or MAT)")->required();
-  validate->add_option("--out", options->directory, "directory for the report (made if absent)");
+  validate->add_option("--out", options->directory, "directory for the report (created if absent)");
   CLI::Option* simulated = validate->add_option(
       "--simulated", options->simulated, "trace of your own simulation, to compare with one recording without a model");
   validate->add_option("--page", options->page, "with --simulated: HTML file to write")->needs(simulated);
@@ -116,13 +117,13 @@ void add_explain(CommandLine& line) {
                       "held-out recordings for the proof (default: each fitted one is left out in turn)");
   explain
       ->add_option("--out", options->directory,
-                   "directory for report.json, report.html and asset.explained.yaml (made if absent)")
+                   "directory for report.json, report.html and asset.explained.yaml (created if absent)")
       ->required();
   CommandLine::add_map(explain, options->map_file);
   explain->add_option("--seed", options->seed, "same seed, same report")->check(not_negative)->capture_default_str();
   explain
       ->add_option("--time-limit", options->time_limit_s,
-                   "seconds after which the best answer so far is given, with a list of what was not tried")
+                   "stop after this many seconds with the best answer so far and a list of what was not tried")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   explain->add_option("--threads", options->threads, "threads to compute with")
@@ -169,9 +170,10 @@ void add_plant_import(CommandLine& line, CLI::App& plant) {
                                [options] { return run_plant_import(*options); });
   unit->add_option("fmu", options->fmu, "FMU of FMI 2.0 or 3.0, for Linux on x86-64")->required();
   unit->add_option("--out", options->file, "plant file to write (YAML)")->required();
-  unit->add_option("--interface", options->interface, "me or cs, of a unit that has both; without it me")
+  unit->add_option("--interface", options->interface, "me or cs, if the unit offers both (default: me)")
       ->check(CLI::IsMember({"me", "cs"}));
-  unit->add_option("--set", options->settings, "NAME=VALUE: a parameter that is set once, as a size or a text")
+  unit->add_option("--set", options->settings,
+                   "NAME=VALUE: a parameter fixed before the run, such as a size or a file name")
       ->allow_extra_args(false);
 }
 
@@ -182,7 +184,7 @@ void add_plant_export(CommandLine& line, CLI::App& plant) {
                                [options] { return run_plant_export(*options); });
   back->add_option("--asset", options->asset_file, "asset file")->required()->check(an_asset_file, "FILE");
   back->add_option("--fmu", options->fmu, "FMU to write (Model Exchange)")->required();
-  back->add_option("--fmi", options->fmi, "version of the standard, 2 unless given; an imported FMU keeps its own")
+  back->add_option("--fmi", options->fmi, "FMI version (default: 2; an imported FMU keeps its own)")
       ->check(CLI::IsMember({2, 3}));
 }
 

@@ -14,7 +14,7 @@ void add_acknowledge(CommandLine& line) {
                                        "sealwatch acknowledge XT03-MV2 ADVISORY_ID --by 'J. Silva'",
                                        [options] { return run_acknowledge(*options); });
   CommandLine::add_config(acknowledge, options->config);
-  acknowledge->add_option("asset", options->asset_id, "asset id; - for an alarm about no asset")->required();
+  acknowledge->add_option("asset", options->asset_id, "asset id, or - for an alarm that concerns no asset")->required();
   acknowledge->add_option("advisory", options->advisory_id, "advisory id, or an alarm's id as `status --json` shows it")
       ->required();
   acknowledge->add_option("--by", options->by, "who")->required();
@@ -48,7 +48,7 @@ void add_shelving(CommandLine& line) {
                                     [options] { return run_shelve(*options); });
   for (CLI::App* one : {shelve, unshelve}) {
     CommandLine::add_config(one, options->config);
-    one->add_option("asset", options->asset_id, "asset id; - for an alarm about no asset")->required();
+    one->add_option("asset", options->asset_id, "asset id, or - for an alarm that concerns no asset")->required();
     one->add_option("alarm", options->alarm_id, "the alarm's id as `status --json` shows it")->required();
     one->add_option("--by", options->by, "who")->required();
   }

@@ -92,7 +92,8 @@ void add_show(CommandLine& line) {
   CLI::App* show = line.command("show", "open a message and trace it back to the waveform",
                                 "sealwatch show XT03-MV2 --state demo/state", [options] { return run_show(*options); });
   CommandLine::add_config(show, options->config);
-  show->add_option("id", options->id, "message id, or a test's PST id, or an asset id for its newest advisory")
+  show->add_option("id", options->id,
+                   "message id, PST id of a test or its beginning, or asset id for its newest advisory")
       ->required();
   show->add_option("--state", options->state_directory,
                    "state directory of the services (running or not), instead of the configuration's");

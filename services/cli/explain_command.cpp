@@ -111,16 +111,16 @@ std::string parameter_text(const FoundParameter& parameter) {
 }
 
 void print_effect(const FoundEffect& effect) {
-  std::printf("\n  %s of the %s (%s)\n", text::in_words(effect.what.id).c_str(),
-              report::element_name(effect.what.element).c_str(), text::percent_text(effect.probability).c_str());
+  std::printf("\n  %s of %s (%s)\n", text::in_words(effect.what.id).c_str(),
+              report::the_element(effect.what.element).c_str(), text::percent_text(effect.probability).c_str());
   std::printf("    %s\n", wrapped(effect.what.law, kWidth, 4).c_str());
   for (const FoundParameter& parameter : effect.parameters) std::printf("    %s\n", parameter_text(parameter).c_str());
   if (!effect.regime.empty()) std::printf("    acts: %s\n", wrapped(effect.regime, kWidth, 4).c_str());
   std::string others;
   for (const mismatch::LawAt& other : effect.indistinguishable)
-    others += (others.empty() ? "" : ", ") + (effect.is_another_form(other) ? "another form of it (" + other.law + ")"
-                                                                            : text::in_words(other.id) + " of the " +
-                                                                                  report::element_name(other.element));
+    others += (others.empty() ? "" : ", ") +
+              (effect.is_another_form(other) ? "another form of it (" + other.law + ")"
+                                             : text::in_words(other.id) + " of " + report::the_element(other.element));
   if (!others.empty()) std::printf("    %s\n", wrapped("indistinguishable from: " + others, kWidth, 4).c_str());
 }
 
@@ -140,9 +140,9 @@ void print_prognosis(const Explanation& explanation) {
   const auto leakage =
       std::ranges::find(explanation.parameters, scale ? scale->parameter : "", &mismatch::ParameterShift::name);
   if (!explanation.prognosis.known || leakage == explanation.parameters.end()) return;
-  std::printf("\n  %s %s +- %s -> %s +- %s %s\n  %s\n", leakage->name.c_str(), number(leakage->before).c_str(),
-              number(leakage->before_std, 2).c_str(), number(leakage->after).c_str(),
-              number(leakage->after_std, 2).c_str(), leakage->unit.c_str(),
+  std::printf("\n  %s %s → %s\n  %s\n", leakage->name.c_str(),
+              text::readable_with_error(leakage->before, leakage->before_std, leakage->unit).c_str(),
+              text::readable_with_error(leakage->after, leakage->after_std, leakage->unit).c_str(),
               wrapped(explanation.prognosis.sentence, kWidth, 2).c_str());
 }
 

@@ -167,10 +167,10 @@ struct ParameterRow {
 void print_parameters(const std::vector<ParameterRow>& rows) {
   int width = 18;
   for (const ParameterRow& row : rows) width = std::max(width, static_cast<int>(row.parameter.name.size()));
-  std::printf("\n  %-*s %14s     %-16s %s\n", width, "parameter", "value", "std. error", "unit");
+  std::printf("\n  %-*s %14s    %-16s %s\n", width, "parameter", "value", "std. error", "unit");
   for (const auto& [parameter, recording] : rows) {
     const std::string error = std::isfinite(parameter.std_error) ? number(parameter.std_error, 2) : "not identifiable";
-    std::printf("  %-*s %14s  +- %-16s %-12s%s%s\n", width, parameter.name.c_str(), number(parameter.value, 5).c_str(),
+    std::printf("  %-*s %14s  ± %-16s %-12s%s%s\n", width, parameter.name.c_str(), number(parameter.value, 5).c_str(),
                 error.c_str(), parameter.unit.c_str(), recording.c_str(), parameter.at_bound ? "  at its bound" : "");
   }
 }

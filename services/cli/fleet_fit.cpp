@@ -93,9 +93,9 @@ void print_text(const FleetFit& fit, const FleetErrors& errors, const FleetConst
               kReferenceLives);
   if (fit.passed_over > 0)
     std::printf("  passed over, with fewer than %d tests: %d\n", forecast::kFewestTestsOfLife, fit.passed_over);
-  std::printf("  %-22s %14s     %-12s %14s\n", "constant", "fleet", "std. error", "reference");
+  std::printf("  %-22s %14s    %-12s %14s\n", "constant", "fleet", "std. error", "reference");
   const auto row = [](const char* name, double value, double error, double usual) {
-    std::printf("  %-22s %14s  +- %-12s %14s\n", name, number(value, 4).c_str(), number(error, 2).c_str(),
+    std::printf("  %-22s %14s  ± %-12s %14s\n", name, number(value, 4).c_str(), number(error, 2).c_str(),
                 number(usual, 4).c_str());
   };
   row("initial_rate", fit.population.initial_rate, errors.initial_rate, reference.initial_rate);

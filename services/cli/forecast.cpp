@@ -87,7 +87,7 @@ void print_text(const ForecastQuestion& question, const forecast::ForecastPanel:
     std::printf("standard errors: not known of %zu of %zu tests; how the tests scatter stands for them\n",
                 question.without_error, question.request.history.size());
   for (const ConditionSample& sample : question.vague)
-    std::printf("left out as too vague: %s, theta %s +- %s\n", format_date(sample.time).c_str(),
+    std::printf("left out as too vague: %s, theta %s ± %s\n", format_date(sample.time).c_str(),
                 number(sample.condition, 3).c_str(), number(sample.condition_std, 2).c_str());
   for (const ConditionSample& sample : answer.left_out)
     std::printf("left out as an isolated outlier: %s, theta %s\n", format_date(sample.time).c_str(),

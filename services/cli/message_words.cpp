@@ -7,6 +7,7 @@
 #include "services/cli/summary.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/common/text/numbers.hpp"
+#include "services/common/text/readable.hpp"
 #include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
@@ -89,8 +90,8 @@ std::string content(const HealthReport& m) {
 }
 std::string content(const LeakageEstimate& m) {
   if (!m.estimated) return "no estimate: " + text::separated(m.reasons);
-  std::string text = worn_parameter(m) + " " + number(m.resistance_Pa_s_m3, 3) + " +- " +
-                     number(m.resistance_std_Pa_s_m3, 2) + worn_unit(m);
+  std::string text =
+      worn_parameter(m) + " " + text::readable_with_error(m.resistance_Pa_s_m3, m.resistance_std_Pa_s_m3, worn_unit(m));
   if (m.condition_known) text += ", " + worn_condition(m) + " " + percent(m.condition);
   if (!m.used_for_forecast) text += ", left out: " + text::separated(m.reasons);
   return text;

@@ -46,7 +46,7 @@ std::optional<Error> objection(const Configuration& configuration, const std::st
   return Error{.file = config,
                .place = "assets",
                .value = asset_id,
-               .rule = "is not a configured asset, and no service that runs tells of it",
+               .rule = "is not a configured asset, and no running service knows it",
                .advice = suggest(asset_id, known)};
 }
 

@@ -114,7 +114,7 @@ Status ReplayLog::written() {
       return fail(Error{.file = results_file(topic),
                         .place = "--results",
                         .value = {},
-                        .rule = "cannot be written to: what is there is not all",
+                        .rule = "cannot be written to: its content is incomplete",
                         .advice = "make room, and replay again"});
   return {};
 }

@@ -26,7 +26,7 @@ std::optional<Error> not_a_file(const std::string& file) {
   return Error{.file = file,
                .place = {},
                .value = {},
-               .rule = folder ? "is a folder" : "is not there",
+               .rule = folder ? "is a folder" : "does not exist",
                .advice = folder ? "give its recordings: " + (std::filesystem::path(file) / "*.csv").string() : ""};
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <set>
 
 #include "sealwatch/core/recording.hpp"
 #include "sealwatch/core/text.hpp"
@@ -25,6 +26,7 @@ constexpr std::array kFromTheEnd = {Topic::advisory,      Topic::remaining_life,
                                     Topic::test_window};
 constexpr std::string_view kRecommendation = "recommendation/";  ///< how the id of an advisory begins
 constexpr std::size_t kNearest = 3;
+constexpr std::size_t kShortestBeginning = 4;  ///< characters of a PST id that may stand for it
 
 std::string topic_name(Topic topic) { return std::string(name_of(topic)); }
 
@@ -69,7 +71,7 @@ Error not_found(const std::string& name, bool received, const std::string& advic
     error.rule = "was received here, and the journal of " + writer_of(*topic) + " does not hold it";
     error.advice = "was that journal begun anew? open what was concluded from it";
   } else if (received) {
-    error.rule = "came from outside: of such messages the id is kept, not what they said";
+    error.rule = "came from outside: of such messages only the id is kept";
     error.advice = "open what was concluded from it";
   } else {
     error.rule = journals.unread().empty() ? "is not a message, test or asset in these journals"
@@ -81,13 +83,46 @@ Error not_found(const std::string& name, bool received, const std::string& advic
   return error;
 }
 
-/// The id that is meant; an Error where none is.
-Result<std::string> resolve(const std::string& name, StateJournals& journals) {
+/// The first of `name`'s meanings that is kept; "": none is.
+Result<std::string> kept_meaning(const std::string& name, StateJournals& journals) {
   for (const std::string& id : meanings_of(name)) {
     const auto kept = journals.find(id);
     if (!kept) return fail(kept.error());
     if (*kept) return id;
   }
+  return std::string();
+}
+
+/// PST ids that begin with `name`, which is shorter.
+Result<std::set<std::string>> tests_that_begin(const std::string& name, StateJournals& journals) {
+  std::set<std::string> tests;
+  if (name.size() < kShortestBeginning || name.find('/') != std::string::npos) return tests;
+  for (const Topic topic : kFromTheEnd) {
+    if (journals.unread(topic_name(topic)) != nullptr) continue;
+    const auto ids = journals.ids(topic);
+    if (!ids) return fail(ids.error());
+    const std::string begin = topic_name(topic) + "/" + name;
+    for (const std::string& id : *ids)
+      if (id.starts_with(begin) && id.find('/', begin.size()) == std::string::npos)
+        tests.insert(id.substr(topic_name(topic).size() + 1));
+  }
+  return tests;
+}
+
+Error ambiguous(const std::string& name, const std::set<std::string>& tests, const StateJournals& journals) {
+  std::string newest;
+  auto test = tests.rbegin();
+  for (std::size_t k = 0; k < kNearest && test != tests.rend(); ++k, ++test) newest += (k > 0 ? ", " : "") + *test;
+  return {.file = journals.place(),
+          .place = {},
+          .value = name,
+          .rule = "is how the ids of " + std::to_string(tests.size()) + " tests begin",
+          .advice = "give more of the id; the newest are " + newest};
+}
+
+/// The id that is meant; an Error where none is. Of a test the beginning of its id will do, if no other begins so.
+Result<std::string> resolve(const std::string& name, StateJournals& journals) {
+  if (auto id = kept_meaning(name, journals); !id || !id->empty()) return id;
   if (journals.unread(topic_name(Topic::advisory)) == nullptr) {
     const auto of_asset = journals.ids(Topic::advisory, name);
     if (!of_asset) return fail(of_asset.error());
@@ -95,6 +130,10 @@ Result<std::string> resolve(const std::string& name, StateJournals& journals) {
   }
   const auto received = journals.received(name);
   if (!received) return fail(received.error());
+  const auto tests = tests_that_begin(name, journals);
+  if (!tests) return fail(tests.error());
+  if (tests->size() > 1) return fail(ambiguous(name, *tests, journals));
+  if (tests->size() == 1) return kept_meaning(*tests->begin(), journals);
   const auto advice = advice_for(name, journals);
   if (!advice) return fail(advice.error());
   return fail(not_found(name, *received, *advice, journals));

@@ -18,7 +18,7 @@ Error missing(const std::string& service, const std::string& connection) {
   return {.file = Journal::file_of(connection),
           .place = {},
           .value = {},
-          .rule = "is not there: what " + service + " concluded cannot be looked into",
+          .rule = "does not exist: the conclusions of " + service + " cannot be shown",
           .advice = "give the state directory where that service keeps it with --state, or restore it from a backup"};
 }
 

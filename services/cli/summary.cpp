@@ -10,6 +10,7 @@
 #include "services/cli/message_words.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/common/message/json.hpp"
+#include "services/common/text/readable.hpp"
 #include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
@@ -68,8 +69,8 @@ std::string AssetView::seal_lines() const {
             percent(life_->threshold, 0) + ")\n";
   if (latest != nullptr)
     text += (is_of_seal(*latest) ? "  leakage          " : "  wear             ") + worn_parameter(*latest) + " " +
-            number(latest->resistance_Pa_s_m3, 4) + " +- " + number(latest->resistance_std_Pa_s_m3, 2) +
-            worn_unit(*latest) + " by sensor noise alone, from the " + latest->chosen_model + " model\n";
+            text::readable_with_error(latest->resistance_Pa_s_m3, latest->resistance_std_Pa_s_m3, worn_unit(*latest)) +
+            " by sensor noise alone, from the " + latest->chosen_model + " model\n";
   if (health_ && is_of_now(health_->header)) {
     text += "  health           ";
     text += health_->health_grade_known ? "grade " + number(health_->health_grade, 2) + " (1 as new, 0 failed)"

@@ -84,7 +84,7 @@ void FolderReader::end_removed(const std::vector<SampleBlock>& open) {
     report_(Error{.file = closing.recording_id,
                   .place = "asset " + closing.asset_id,
                   .value = {},
-                  .rule = "was removed before all of it was taken: its test ends where it is",
+                  .rule = "was removed before it was read completely: its test ends there",
                   .advice = "retract " + closing.header.pst_id + ", if it should not count"});
     blocks_.push_back(end_of(closing));
   }

@@ -88,7 +88,7 @@ void AlignmentCheck::note_offset(const std::string& channel, double offset_s, do
   one.time_offset_s = offset_s;
   one.time_offset_std_s = std_s;
   one.corrected = one.corrected || correct;
-  one.remark += text::format("{}{:.0f} +- {:.0f} ms {}: {}", one.remark.empty() ? "" : "; ", 1e3 * std::abs(offset_s),
+  one.remark += text::format("{}{:.0f} ± {:.0f} ms {}: {}", one.remark.empty() ? "" : "; ", 1e3 * std::abs(offset_s),
                              1e3 * std_s, offset_s > 0.0 ? "late" : "early", why);
   if (correct) alignment_.corrections[channel].shift_s = offset_s;
 }

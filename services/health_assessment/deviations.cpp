@@ -6,6 +6,7 @@
 
 #include "services/common/text/format.hpp"
 #include "services/common/text/numbers.hpp"
+#include "services/common/text/readable.hpp"
 #include "services/common/text/words.hpp"
 
 namespace sealwatch {

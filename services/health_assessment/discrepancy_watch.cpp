@@ -8,6 +8,7 @@
 #include "sealwatch/message/provenance.hpp"
 #include "services/common/text/format.hpp"
 #include "services/common/text/numbers.hpp"
+#include "services/common/text/readable.hpp"
 #include "services/common/text/words.hpp"
 #include "services/health_assessment/deviations.hpp"
 

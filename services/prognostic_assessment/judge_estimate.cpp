@@ -4,6 +4,7 @@
 
 #include "sealwatch/model/plant_description.hpp"
 #include "services/common/text/numbers.hpp"
+#include "services/common/text/readable.hpp"
 
 namespace sealwatch::prognostic_assessment {
 namespace {
@@ -44,8 +45,7 @@ void take_value(LeakageEstimate& estimate, const FitReport& fit, const Estimated
   estimate.unit = worn.unit;
   if (!fit.admissible) append(estimate.reasons, fit.reasons, "the fit of model " + fit.model + " is not admissible");
   if (positive && worn.value <= 0.0)
-    estimate.reasons.push_back(worn.name + " = " + text::three_digits(worn.value) + " " + worn.unit +
-                               " is not positive");
+    estimate.reasons.push_back(worn.name + " = " + text::with_unit(worn.value, worn.unit) + " is not positive");
 }
 
 void take_condition(LeakageEstimate& estimate, const AssetConfig& asset, const PlantDescription& plant,

@@ -326,7 +326,7 @@ TEST_F(Commands, ReplayPassesOverAMissingRecordingAndAFolder) {
       run({"sealwatch", "replay", "--config", config(), "--offline", "--quiet", missing, folder_.string(), recording});
   EXPECT_EQ(replay.status, 2) << replay.output;
   EXPECT_THAT(replay.output,
-              ::testing::AllOf(HasSubstr("nofile.csv: is not there"), HasSubstr("is a folder"), HasSubstr("R_CL")));
+              ::testing::AllOf(HasSubstr("nofile.csv: does not exist"), HasSubstr("is a folder"), HasSubstr("R_CL")));
 }
 
 /// Names that the system cannot follow are bad input, no failure of this program.

@@ -15,9 +15,9 @@ namespace sealwatch {
 [[nodiscard]] inline std::string worn_parameter(const LeakageEstimate& estimate) {
   return estimate.parameter.empty() ? "R_CL" : estimate.parameter;
 }
-/// " Pa s/m3"
+/// "Pa s/m3"
 [[nodiscard]] inline std::string worn_unit(const LeakageEstimate& estimate) {
-  return " " + (estimate.unit.empty() ? std::string("Pa s/m3") : estimate.unit);
+  return estimate.unit.empty() ? "Pa s/m3" : estimate.unit;
 }
 /// "seal condition"
 [[nodiscard]] inline std::string worn_condition(const LeakageEstimate& estimate) {

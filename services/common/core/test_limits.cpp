@@ -68,13 +68,13 @@ std::optional<std::string> beyond_limits(std::span<const double> time_s, std::si
 std::optional<std::string> malformed(const TimeSeries& samples, bool gaps, const TestLimits& limits) {
   const std::vector<double>& time_s = samples.time_s;
   const auto no_time = [&](double t) { return !plausible(t, limits.largest_time_s); };
-  if (std::ranges::any_of(time_s, no_time)) return "a time that is none";
+  if (std::ranges::any_of(time_s, no_time)) return "an impossible time";
   if (std::ranges::adjacent_find(time_s, std::greater_equal<>()) != time_s.end()) return "times that do not increase";
   for (const Series& channel : samples.channels) {
     const auto damaged = [&](double v) { return !(gaps && std::isnan(v)) && !plausible(v, kLargestOfAnyChannel); };
     if (channel.values.size() != time_s.size()) return "a channel with another number of samples than time";
     if (!plausible(channel.noise_std, kLargestOfAnyChannel) || channel.noise_std < 0.0)
-      return "a noise_std that is none";
+      return "an impossible noise_std";
     if (std::ranges::any_of(channel.values, damaged)) return "a number that no sensor gives";
   }
   return too_many(time_s.size(), samples.channels.size(), limits);

@@ -137,7 +137,7 @@ std::string in_words(SearchEnd end) {
     case SearchEnd::out_of_iterations:
       return "not converged: out of iterations";
     case SearchEnd::out_of_reach:
-      return "not converged: it cannot come to what is known to be possible";
+      return "not converged: a better fit is known to exist";
     case SearchEnd::out_of_time:
       return "not converged: out of time";
     case SearchEnd::stuck:

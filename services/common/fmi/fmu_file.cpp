@@ -136,7 +136,7 @@ Status FmuFile::find_binary() {
   const bool has_sources = std::ranges::any_of(
       unpacked_.members, [](const std::string& member) { return member.starts_with("sources/") && member.size() > 8; });
   return fail(refusal(
-      "has no binary " + binary_ + (there.empty() ? "; it has none at all" : "; it has some for " + there),
+      "has no binary " + binary_ + (there.empty() ? "; it has none for any platform" : "; it has some for " + there),
       has_sources ? "it has its sources: compile those in sources/ to a shared library of that name and add it to "
                     "the archive, or export the FMU for Linux on x86-64 (linux64)"
                   : "export the FMU for Linux on x86-64 (linux64)"));

@@ -8,6 +8,7 @@
 #include "sealwatch/forecast/degradation_line.hpp"
 #include "services/common/forecast/forecast_parts.hpp"
 #include "services/common/text/numbers.hpp"
+#include "services/common/text/readable.hpp"
 
 namespace sealwatch::forecast {
 namespace {
@@ -159,7 +160,7 @@ PredictiveForecast OlsForecaster::answer(const ForecastRequest& request) const {
   auto remaining = crossing_distribution(*line, request.threshold, axis);
   if (p > options_.significance || !remaining)
     return {say(forecast, ForecastState::no_significant_trend,
-                "the condition does not fall significantly over these months (p = " + text::three_digits(p) + ")")};
+                "the condition does not fall significantly over these months (p = " + text::in_sentence(p, 2) + ")")};
   if (remaining->quantile(0.5) <= 0.0)
     return {say_past_threshold(forecast, request,
                                "the fitted line is at " +

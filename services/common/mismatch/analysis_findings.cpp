@@ -305,8 +305,8 @@ void Analysis::decide() {
   if (why_none_ || findings.differs) return;
   for (const Power* one : blind)
     result_.notes.push_back("These recordings would show " + law_in_words(one->what) + " only from " +
-                            number(one->minimum_detectable) + " " + one->unit + "; an engineer would care from " +
-                            number(one->significant) + " " + one->unit + ".");
+                            text::readable(one->minimum_detectable, one->unit) + "; an engineer would care from " +
+                            text::readable(one->significant, one->unit) + ".");
 }
 
 }  // namespace sealwatch::mismatch

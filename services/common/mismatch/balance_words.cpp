@@ -97,7 +97,7 @@ FoundEffect effect_of(const BalanceFinding& finding, const PlantDescription& pla
   effect.delta_bic = -finding.weight;
   if (is_datasheet(finding)) {
     effect.engineering_share = std::abs(finding.value / finding.datasheet - 1.0) / kDatasheetMatters;
-    effect.what.law.append(" = ").append(number(finding.value, 4)).append(" ").append(effect.parameters[0].unit);
+    effect.what.law.append(" = ").append(text::with_unit(finding.value, effect.parameters[0].unit, 4));
     effect.what.law.append(" in place of ").append(number(finding.datasheet, 4));
   } else {
     for (const LawParameter& parameter : finding.what.law->parameters)
@@ -124,7 +124,7 @@ std::string leakage_in_words(const BalanceFit& fit) {
   if (leakage == fit.free.end()) return {};
   std::string text = "Internal leakage: " + leakage->name + " ";
   if (leakage->after_std < 0.5 * leakage->after)
-    text.append(number(leakage->after)).append(" +- ").append(number(leakage->after_std)).append(" Pa s/m3.");
+    text.append(text::readable_with_error(leakage->after, leakage->after_std, "Pa s/m3")).append(".");
   else
     text +=
         "is not identifiable from these recordings: while the valves are open the pump's leakage takes the same "

@@ -30,7 +30,7 @@ std::string Course::in_words() const {
       texts.push_back(number(values[k].value, 4) + " (" + values[k].when + ")");
     else if (k == 1)
       texts.push_back("... (" + std::to_string(values.size() - 2) + " tests)");
-  return joined(texts, ", ") + " " + unit;
+  return joined(texts, ", ") + (unit == "1" ? "" : " " + text::unit_text(unit));
 }
 
 double Misfit::criterion(double phi) const { return sum / phi + free * std::log(residuals); }

@@ -169,8 +169,7 @@ std::string values_in_words(const std::vector<std::vector<AssetValue>>& values) 
     std::vector<std::string> texts;
     for (const AssetValue& value : entry) {
       const double percent = 100.0 * (value.fitted / value.in_asset_file - 1.0);
-      const std::string unit = value.unit == "1" ? "" : " " + value.unit;
-      texts.push_back(value.name + " = " + number(value.fitted, 4) + unit + " instead of " +
+      texts.push_back(value.name + " = " + text::with_unit(value.fitted, value.unit, 4) + " instead of " +
                       number(value.in_asset_file, 4) + " (" + (percent > 0.0 ? "+" : "") + number(percent, 2) + " %)");
     }
     text += (text.empty() ? "" : ", or ") + joined(texts, " and ");

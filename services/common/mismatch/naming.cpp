@@ -484,7 +484,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
         naming.differs_in = best->differs_in;
       break;
     }
-    if (!in_time("laws that did not come to be fitted, and what the best of the others leaves")) {
+    if (!in_time("laws that were not fitted, and what the best of the others leaves")) {
       naming.best = *best;
       break;
     }

@@ -62,10 +62,10 @@ std::string size_in_words(const FittedModel& model, const Effect& effect, const 
   const std::string unit(strength.unit);
   if (strength.own_size || plant.file.empty() || unit == "s") return "";
   const double value = *estimate_of(model, physics_parameter_name(effect.element, effect.law->id, strength.name));
-  return law_in_words(law_at(effect)) + " with " + std::string(strength.name) + " = " + number(value) + " " + unit +
+  return law_in_words(law_at(effect)) + " with " + std::string(strength.name) + " = " + text::with_unit(value, unit) +
          " fits better and is not claimed: by law_sizes in the plant file (" + unit + ": " +
          number(law_size(plant, strength)) + ") such a law matters here from " +
-         number(significant_size(plant, strength)) + " " + unit + " only, beside which this is nothing";
+         text::with_unit(significant_size(plant, strength), unit) + " only, beside which this is nothing";
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ std::string values_at_their_end(const FittedModel& model, const AssetConfig& ass
     const auto given = asset.parameters.find(unknown.name);
     const double at = model.optimum.point.shared[k];
     if (!unknown.is_known() || given == asset.parameters.end() || !at_bound(unknown, at)) continue;
-    moved.push_back(unknown.name + " to " + number(unknown.to_value(at)) + " " + unknown.unit + " from " +
+    moved.push_back(unknown.name + " to " + text::with_unit(unknown.to_value(at), unknown.unit) + " from " +
                     number(given->second.value));
   }
   if (moved.empty()) return {};

@@ -124,7 +124,7 @@ std::string found_in_words(const std::vector<FoundEffect>& effects) {
   if (!physics.empty()) text = "The simulation lacks " + joined(physics, " and ");
   if (!faults.empty())
     text += (physics.empty() ? "The recordings show " : ", and the recordings show ") + joined(faults, " and ");
-  return text + (effects.size() > 1 ? ". With them " : ". With it ");
+  return text + ".";
 }
 
 constexpr double kNoLarger = 1.05;  // times the noise, whose own size is known no better
@@ -149,7 +149,8 @@ std::string summary_of(const Explanation& explanation) {
   if (explanation.verdict == Verdict::mismatch) {
     text = found_in_words(explanation.effects);
     if (const std::string proof = proof_in_words(explanation.holdout); !proof.empty())
-      text += proof + "." + left_in_words(explanation.holdout);
+      text += (explanation.effects.size() > 1 ? " With them, " : " With it, ") + proof + "." +
+              left_in_words(explanation.holdout);
     for (const FoundEffect& effect : explanation.effects) {
       if (effect.indistinguishable.empty()) continue;
       std::vector<std::string> others;

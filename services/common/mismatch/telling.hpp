@@ -4,14 +4,16 @@
 #include <string>
 
 #include "sealwatch/mismatch/explanation.hpp"
-#include "services/common/text/numbers.hpp"
+#include "services/common/text/readable.hpp"
 #include "services/common/text/words.hpp"
 
 namespace sealwatch::mismatch {
 
 using text::in_words;
 using text::joined;
-using text::number;
+
+/// In a sentence: 64400, 2.6·10¹³.
+[[nodiscard]] inline std::string number(double value, int digits = 3) { return text::in_sentence(value, digits); }
 
 /// As probable as anything is said to be.
 inline constexpr double kNeverCertain = 0.999;

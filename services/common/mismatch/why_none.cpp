@@ -75,7 +75,7 @@ WhyNone value_of_the_asset_file(const std::string& values, bool several, const s
   const std::string proof = proof_in_words(holdout);
   const std::string start =
       several ? "Values that the asset file fixes may be wrong: " : "A value that the asset file fixes may be wrong: ";
-  const std::string with = (several ? "With them " : "With it ") + (beside.empty() ? "" : "and " + beside + " ");
+  const std::string with = (several ? "With them" : "With it") + (beside.empty() ? ", " : " and " + beside + ", ");
   const std::string explains = several || !beside.empty() ? " Together they explain" : " It explains";
   const std::string against =
       instead_of.empty() ? ", and no law that was asked does" : " as well as " + instead_of + " would, or better";

@@ -85,7 +85,7 @@ margin:0;font-size:1.02rem;color:var(--text)}.part>summary span{margin-left:.7re
 @page{size:A4;margin:12mm}*{print-color-adjust:exact;-webkit-print-color-adjust:exact}
 body{max-width:none;padding:0;font-size:12px;line-height:1.4}h1{font-size:15pt}h2{font-size:11pt;margin-top:1rem}p,ul,ol{max-width:none}
 .plots>div,tr,.banner,.steps,.screen>div,.drawing{break-inside:avoid}h2,h3{break-after:avoid}summary{break-after:avoid;list-style:none}
-.part:not([open])>summary{padding:.1rem 0;border:0;break-after:auto}.part:not([open])>summary h2{font-size:9pt}.part details:not([open]){display:none}
+details:not([open]):not(.paper){display:none}
 .scroll{overflow:visible;background:none}table{font-size:8pt}.figures{gap:.3rem 1.5rem;margin:.4rem 0}.figures div{min-width:0}.figures b{font-size:11pt}
 .banner,.steps{padding:.4rem .8rem;margin:.5rem 0}.plots{gap:.2rem .8rem}.plots>div{width:48.5%}
 svg[role]{width:100%}svg text{font-size:12px}}

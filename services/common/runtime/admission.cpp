@@ -79,7 +79,7 @@ std::optional<std::string> refusal_of_kind(const Message& message) {
            "', does not say which alarm is meant; use sealwatch shelve";
   }
   if (!is_retraction_kind(event->kind))
-    return "its kind, '" + event->kind + "', is none of actuator_replaced, seal_replaced, " +
+    return "its kind, '" + event->kind + "', is not one of actuator_replaced, seal_replaced, " +
            std::string(kTestRetracted) + ", " + std::string(kTestsRetracted) + ", " +
            std::string(kRetractionWithdrawn) + ", " + std::string(kActConfirmed) + ", " + std::string(kActRejected) +
            ", " + std::string(kAlarmShelved) + ", " + std::string(kAlarmUnshelved) + ", " +
@@ -313,7 +313,7 @@ std::optional<std::string> Admission::refusal(const Message& message, UtcTime no
   const auto* const raw = std::get_if<RawSamples>(&message);
   if (auto why = raw != nullptr ? refusal_of_test(*raw) : refusal_of_samples(message)) return why;
   if (header.event_time_known && !is_time(header.event_time_ns))
-    return "its time, " + format_utc({header.event_time_ns}) + ", is none from 1970 to 2260";
+    return "its time, " + format_utc({header.event_time_ns}) + ", is not between 1970 and 2260";
   if (is_report(message)) return refusal_of_report(message, now);
   return time_of_test(message) ? refusal_of_time(message, now) : refusal_of_future_act(message, now);
 }
@@ -322,7 +322,7 @@ std::optional<std::string> Admission::refusal_of_recorded(const Message& act) co
   if (auto why = refusal_of_texts(act)) return why;
   const Header& header = header_of(act);
   if (header.event_time_known && !is_time(header.event_time_ns))
-    return "its time, " + format_utc({header.event_time_ns}) + ", is none from 1970 to 2260";
+    return "its time, " + format_utc({header.event_time_ns}) + ", is not between 1970 and 2260";
   return refusal_of_kind(act);
 }
 
@@ -374,7 +374,8 @@ std::optional<std::string> Admission::refusal_of_test(const RawSamples& raw) con
     return (raw.recording_id.empty() ? "a test" : "recording " + raw.recording_id) +
            ": its asset_id is empty; say of which asset it is";
   if (raw.block_number > kMostBlocks)
-    return name_of_test(raw) + ": block " + std::to_string(raw.block_number) + " is none of a test: they count from 0";
+    return name_of_test(raw) + ": block " + std::to_string(raw.block_number) +
+           " is not possible: the blocks of a test count from 0";
   if (is_made_up(raw.source_id) && recorded_.contains(raw.asset_id))
     return name_of_test(raw) + ": made up by the virtual bench, it does not belong into the history of an asset with " +
            "recorded tests; give the bench a configuration with assets and a state directory of its own";
@@ -383,7 +384,7 @@ std::optional<std::string> Admission::refusal_of_test(const RawSamples& raw) con
 
 std::optional<std::string> Admission::refusal_of_time(const Message& message, UtcTime now) const {
   const UtcTime time{*time_of_test(message)};
-  if (!is_time(time.nanoseconds)) return with_its_time(message, time) + ", is none from 1970 to 2260; correct it";
+  if (!is_time(time.nanoseconds)) return with_its_time(message, time) + ", is not between 1970 and 2260; correct it";
   const auto commissioned = commissioned_.find(asset_of(message));
   if (topic_of(message) == Topic::raw_samples && commissioned != commissioned_.end() && time < commissioned->second)
     return with_its_time(message, time) + ", lies before the asset was commissioned, " +

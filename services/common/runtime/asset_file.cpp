@@ -124,7 +124,7 @@ void read_seal(YamlMap& asset, const PlantDescription& plant, AssetConfig& confi
   auto map = asset.map("seal");
   if (!map) return;
   if (!plant.condition) {
-    asset.fault("seal", {}, "is of plants with a piston seal, and " + plant.name + " is none",
+    asset.fault("seal", {}, "is for plants with a piston seal, and " + plant.name + " has none",
                 "say what wears with condition: {parameter: ..., at_100: ..., at_60: ...}");
     return;
   }

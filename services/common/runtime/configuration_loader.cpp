@@ -35,10 +35,10 @@ Error not_there(const fs::path& file) {
   return {.file = fs::absolute(file).lexically_normal().string(),
           .place = {},
           .value = {},
-          .rule = "is not there: no configuration",
+          .rule = "does not exist: no configuration",
           .advice =
-              "name the folder that holds sealwatch.yaml with --config or in SEALWATCH_CONFIG; an installed system "
-              "has it in /etc/sealwatch, a checkout in config"};
+              "give the folder that holds sealwatch.yaml (--config or SEALWATCH_CONFIG): /etc/sealwatch if installed, "
+              "config in a checkout"};
 }
 
 template <class Enum>

@@ -65,7 +65,7 @@ bool StrangerWatch::remember(const std::string& writer_id, Steady now) {
 std::vector<StrangerWatch::Stranger> StrangerWatch::hear(const ServiceStatus& status, Steady now) {
   if (options_.services.empty()) return {};
   if (std::ranges::find(options_.services, status.service) == options_.services.end())
-    return {{"service " + status.service, "it sends heartbeats and is none of the services"}};
+    return {{"service " + status.service, "it sends heartbeats but is not one of the services"}};
   if (remember(status.writer_id, now)) waiting_.erase(status.writer_id);
   return {};
 }
@@ -84,7 +84,7 @@ std::vector<StrangerWatch::Stranger> StrangerWatch::hear(const Message& message,
   if (const auto* raw = std::get_if<RawSamples>(&message)) {
     if (expects(*raw)) return {};
     return {{"sender " + as_told(raw->source_id), "it sends raw samples of " + as_told(raw->asset_id) +
-                                                      " and is none of the configured senders: they are refused"}};
+                                                      " and is not one of the configured senders: they are refused"}};
   }
   if (options_.services.empty() || is_from_outside(topic_of(message))) return {};
   const std::string& writer_id = header_of(message).writer_id;

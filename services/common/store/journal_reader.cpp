@@ -126,7 +126,7 @@ Result<JournalReader> JournalReader::open(const std::string& connection, const s
     const std::string file = Journal::file_of(connection);
     std::error_code none;
     if (!std::filesystem::is_regular_file(file, none))
-      return fail(Error{.file = file, .place = {}, .value = {}, .rule = "is not there", .advice = {}});
+      return fail(Error{.file = file, .place = {}, .value = {}, .rule = "does not exist", .advice = {}});
     to_open = std::string(kFile).append("dbname=\"").append(file).append("\" readonly=true timeout=5");
   }
   const auto opened = session->guard([&] {

@@ -35,14 +35,6 @@ std::string exact(double value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
-std::string three_digits(double value) { return format("{:.2e}", value); }
-
-std::string with_unit(double value, std::string_view unit) {
-  std::string text = significant(value);
-  if (unit != "1" && !unit.empty()) text.append(" ").append(unit);
-  return text;
-}
-
 std::string percent(double share, int decimals) { return format("{:.{}f} %", 100.0 * share, decimals); }
 
 std::string in_percent(double probability) {
@@ -69,7 +61,7 @@ std::string as_condition(double condition) { return format("{:.3f}", condition);
 std::string condition_in_percent(double condition) { return percent(condition); }
 
 std::string condition_with_std(double condition, double condition_std) {
-  return format("{:.2f} +- {:.1g} %", 100.0 * condition, 100.0 * condition_std);
+  return format("{:.2f} ± {:.1g} %", 100.0 * condition, 100.0 * condition_std);
 }
 
 std::string spread_in_percent(double spread) { return format("{:.2g} %", 100.0 * spread); }

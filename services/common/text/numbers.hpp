@@ -16,10 +16,6 @@ namespace sealwatch::text {
 [[nodiscard]] std::string with_zeros(double value, int digits = 4);
 /// The shortest text that reads back as the same number: "0.1", "1e-07".
 [[nodiscard]] std::string exact(double value);
-/// 2.2e13 -> "2.20e+13": quantities over many orders of magnitude, three digits.
-[[nodiscard]] std::string three_digits(double value);
-/// 5.91e12, "Pa s/m3" -> "5.91e+12 Pa s/m3"; a unit of "1" (a plain number) is not named.
-[[nodiscard]] std::string with_unit(double value, std::string_view unit);
 
 /// A share: "12.3 %".
 [[nodiscard]] std::string percent(double share, int decimals = 1);
@@ -37,7 +33,7 @@ namespace sealwatch::text {
 [[nodiscard]] std::string as_condition(double condition);
 /// 0.667 -> "66.7 %": the seal condition as on operators' screens.
 [[nodiscard]] std::string condition_in_percent(double condition);
-/// Seal condition and its standard error: "72.35 +- 0.2 %".
+/// Seal condition and its standard error: "72.35 ± 0.2 %".
 [[nodiscard]] std::string condition_with_std(double condition, double condition_std);
 /// How far estimates of it scatter: 0.00123 -> "0.12 %".
 [[nodiscard]] std::string spread_in_percent(double spread);

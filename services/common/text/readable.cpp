@@ -92,6 +92,20 @@ std::string number_text(double value, int digits) {
   return with_minus(format("{:.{}f}", value, std::max(digits - 1 - exponent, 0)));
 }
 
+std::string in_sentence(double value, int digits) {
+  const std::string text = number(value, digits);
+  const std::size_t split = text.find('e');
+  if (split == std::string::npos || !std::isfinite(value)) return with_minus(text);
+  return with_minus(text.substr(0, split)).append("·").append(power_of_ten(std::atoi(text.c_str() + split + 1)));
+}
+
+std::string with_unit(double value, std::string_view si_unit, int digits) {
+  std::string text = in_sentence(value, digits);
+  const std::string unit = unit_text(si_unit);
+  if (!unit.empty()) text.append(" ").append(unit);
+  return text;
+}
+
 std::string readable(double value, std::string_view si_unit, int digits) {
   const DisplayUnit unit = display_unit(si_unit, value);
   const bool power = unit.text.starts_with("10");  // of ten: the number says it itself

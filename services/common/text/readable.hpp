@@ -22,6 +22,12 @@ struct DisplayUnit {
 /// `value` with `digits` significant digits, trailing zeros kept: "0.0123", "4010", "2.60·10¹³". Not a number: "–".
 [[nodiscard]] std::string number_text(double value, int digits = 3);
 
+/// At most `digits` significant digits in a sentence: "64400", "2.6·10¹³", "5·10⁻⁵".
+[[nodiscard]] std::string in_sentence(double value, int digits = 3);
+
+/// The same with its SI unit, beside limits in that unit: "5.91·10¹² Pa·s/m³"; a plain number ("1") has none.
+[[nodiscard]] std::string with_unit(double value, std::string_view si_unit, int digits = 3);
+
 /// Value in its everyday unit: readable(1.05e7, "Pa") = "105 bar".
 [[nodiscard]] std::string readable(double value, std::string_view si_unit, int digits = 3);
 

@@ -12,7 +12,7 @@ namespace {
 
 void add_rul(CLI::App* rul, VerifyRulOptions& o) {
   rul->add_option("--asset", o.asset_file, "asset file")->required()->check(an_asset_file, "FILE");
-  rul->add_option("--out", o.directory, "directory for records and results (made if absent)")->required();
+  rul->add_option("--out", o.directory, "directory for records and results (created if absent)")->required();
   rul->add_option("--lives", o.lives, "number of random lives")->capture_default_str();
   rul->add_option("--seed", o.seed, "same seed, same results")->check(not_negative)->capture_default_str();
   rul->add_option("--months", o.months, "months of service")->capture_default_str();
@@ -24,19 +24,19 @@ void add_rul(CLI::App* rul, VerifyRulOptions& o) {
   rul->add_option("--forecaster", o.forecasters, "METHOD or METHOD:MONTHS, several times (default: all)");
   rul->add_option("--degradation", o.degradation,
                   "published_ln_t (default), published_t, bench, or NAME=NUMBER; several");
-  rul->add_option("--missing", o.missing_share, "share of the months without a test")->capture_default_str();
-  rul->add_option("--cut", o.cut_share, "share of the tests that are cut short")->capture_default_str();
+  rul->add_option("--missing", o.missing_share, "share of months without a test")->capture_default_str();
+  rul->add_option("--cut", o.cut_share, "share of tests cut short")->capture_default_str();
   rul->add_option("--scenario", o.scenarios,
                   "reference, outliers, missing, aborted, replaced, load_change, contamination; several with commas, "
                   "or all: one table of them")
       ->delimiter(',');
   rul->add_flag("--direct", o.direct, "recordings go to the estimator directly, not through the first two layers");
-  rul->add_flag("--resume", o.resume, "go on with an interrupted run in --out");
+  rul->add_flag("--resume", o.resume, "continue an interrupted run in --out");
   rul->add_flag("--json", o.json, "machine-readable result (schema sealwatch.verification/1)");
 }
 
 void add_mismatch(CLI::App* trial, VerifyMismatchOptions& o) {
-  trial->add_option("--out", o.directory, "directory for records and results (made if absent)")->required();
+  trial->add_option("--out", o.directory, "directory for records and results (created if absent)")->required();
   trial->add_option("--sets", o.sets, "sets of each stratum")->check(CLI::Range(0, 100000))->capture_default_str();
   trial
       ->add_option("--strata", o.strata,
@@ -44,7 +44,7 @@ void add_mismatch(CLI::App* trial, VerifyMismatchOptions& o) {
                    "nominal_only, asset_file "
                    "(default: all)")
       ->delimiter(',');
-  trial->add_option("--seed", o.seed, "of the first set; the next has the next")
+  trial->add_option("--seed", o.seed, "seed of the first set; each further set adds 1")
       ->check(not_negative)
       ->capture_default_str();
   trial
@@ -58,13 +58,13 @@ void add_mismatch(CLI::App* trial, VerifyMismatchOptions& o) {
   trial->add_option("--from", o.from, "directories of other shards, whose sets are counted too");
   trial->add_flag("--no-controls", o.without_controls, "only the analysis itself");
   trial->add_flag("--seal", o.seal, "run nothing: write the hash of the sets' labels to sealed.txt");
-  trial->add_flag("--resume", o.resume, "go on with an interrupted run in --out");
+  trial->add_flag("--resume", o.resume, "continue an interrupted run in --out");
   trial->add_flag("--json", o.json, "machine-readable result (schema sealwatch.mismatch_trial/1)");
 }
 
 void add_merge(CLI::App* merge, VerifyMergeOptions& o) {
   merge->add_option("directories", o.directories, "the --out of each shard")->required();
-  merge->add_option("--out", o.directory, "directory for the results (made if absent)")->required();
+  merge->add_option("--out", o.directory, "directory for the results (created if absent)")->required();
   merge->add_flag("--json", o.json, "machine-readable result (schema sealwatch.verification/1)");
 }
 

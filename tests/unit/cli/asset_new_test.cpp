@@ -300,8 +300,8 @@ TEST_F(AssetNew, WhatIsUncertainIsSaidOnTheScreen) {
   EXPECT_THAT(told, ::testing::HasSubstr("the log gives no unit: taken for Pa"));
   EXPECT_THAT(told, ::testing::HasSubstr("output valve_lift [m] not found in "));
   EXPECT_THAT(told, ::testing::HasSubstr("{column: \"LVDT [counts]\", scale: 1, unit: \"m\"}"));
-  EXPECT_THAT(told,
-              ::testing::HasSubstr("asset id: log by the log's name; change it under asset_id in " + path("a.yaml")));
+  EXPECT_THAT(
+      told, ::testing::HasSubstr("asset id: log, from the log's name; change it under asset_id in " + path("a.yaml")));
   std::ostringstream text;
   text << std::ifstream(path("a.yaml")).rdbuf();
   EXPECT_THAT(text.str(), ::testing::HasSubstr("{column: \"LVDT [counts]\", scale: 1, unit: \"m\"}"));
@@ -314,7 +314,7 @@ TEST_F(AssetNew, AColumnWhoseCellsAreNoNumbersIsNamed) {
   const std::string told = ::testing::internal::GetCapturedStdout();
   EXPECT_THAT(told, ::testing::HasSubstr("output pressure [Pa] not found in "));
   EXPECT_THAT(told, ::testing::HasSubstr("may be it, but '1,235.5' in row 3"));
-  EXPECT_THAT(told, ::testing::HasSubstr("as no column has the unit: valve_lift [m]"));
+  EXPECT_THAT(told, ::testing::HasSubstr("has the unit of: valve_lift [m]"));
   std::ostringstream text;
   text << std::ifstream(path("a.yaml")).rdbuf();
   EXPECT_THAT(text.str(), ::testing::HasSubstr("Pressure [psig] may be it, but '1,235.5' in row 3 is not a number"));

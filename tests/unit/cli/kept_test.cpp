@@ -220,7 +220,7 @@ TEST_F(Kept, AMissingJournalIsNamed) {
   const std::string file = file_of("prognostic_assessment").string();
   const Said life = forecast();
   EXPECT_EQ(life.status, kBadInput);
-  EXPECT_THAT(life.errors, AllOf(HasSubstr(file), HasSubstr("is not there"), Not(HasSubstr("no test of any asset"))));
+  EXPECT_THAT(life.errors, AllOf(HasSubstr(file), HasSubstr("does not exist"), Not(HasSubstr("no test of any asset"))));
   const Said estimate = show("leakage_estimate/life-59");
   EXPECT_EQ(estimate.status, kBadInput);
   EXPECT_THAT(estimate.errors, AllOf(HasSubstr(file), Not(HasSubstr("came from outside"))));
@@ -270,6 +270,18 @@ TEST_F(Kept, JournalsThatTheConfigurationNamesWinOverTheStateDirectory) {
   EXPECT_EQ(said([&] { return run_show(options); }).status, kOk) << "the others are in the state directory";
   options.config = (folder_ / "no config").string();
   EXPECT_EQ(said([&] { return run_show(options); }).status, kOk) << "it can be looked into without a configuration";
+}
+
+TEST_F(Kept, OfATestTheBeginningOfItsIdWillDo) {
+  conclude("prognostic_assessment", estimate(3, "another"));
+  const Said one = show("anoth");
+  EXPECT_EQ(one.status, kOk) << one.errors;
+  EXPECT_THAT(one.output, HasSubstr("leakage_estimate/another-3"));
+  const Said many = show("life-");
+  EXPECT_EQ(many.status, kBadInput);
+  EXPECT_THAT(many.errors, AllOf(HasSubstr("is how the ids of 60 tests begin"), HasSubstr("life-9, life-8, life-7")));
+  EXPECT_EQ(show("life-5").status, kOk) << "a whole id, though others begin so";
+  EXPECT_EQ(show("ano").status, kBadInput) << "too short to be meant";
 }
 
 TEST_F(Kept, ProbabilitiesOnThePageReadAsOnTheScreen) {

@@ -40,7 +40,7 @@ std::string refusal_of(const std::string& sidecar) {
 
 TEST(ReplaySource, WhatTheServicesWouldRefuseIsRefused) {
   EXPECT_EQ(refusal_of("start_time: 2009-06-01T00:00:00Z\n"), "");
-  EXPECT_THAT(refusal_of("start_time: 1969-06-01T00:00:00Z\n"), ::testing::HasSubstr("is none from 1970 to 2260"));
+  EXPECT_THAT(refusal_of("start_time: 1969-06-01T00:00:00Z\n"), ::testing::HasSubstr("is not between 1970 and 2260"));
   EXPECT_THAT(refusal_of("start_time: 2008-06-01T00:00:00Z\n"),
               ::testing::HasSubstr("lies before the asset was commissioned"));
   EXPECT_THAT(refusal_of("start_time: 2009-06-01T00:00:00Z\nrecording_id: \"" + std::string(5000, 'x') + "\"\n"),

@@ -41,14 +41,14 @@ TEST(OneLine, SaysWhatMattersWithUnits) {
   estimate.resistance_Pa_s_m3 = 1.0e13;
   estimate.resistance_std_Pa_s_m3 = 2.0e11;
   estimate.used_for_forecast = true;
-  EXPECT_EQ(one_line(Message(estimate)), "2031-04-12  A  leakage_estimate  R_CL 1.00e+13 +- 2.0e+11 Pa s/m3");
+  EXPECT_EQ(one_line(Message(estimate)), "2031-04-12  A  leakage_estimate  R_CL (10.00 ± 0.20)·10¹² Pa·s/m³");
   estimate.header.clock_quality = ClockQuality::stepped;
-  EXPECT_THAT(one_line(Message(estimate)), ::testing::EndsWith("Pa s/m3 [clock of its sender: stepped]"));
+  EXPECT_THAT(one_line(Message(estimate)), ::testing::EndsWith("Pa·s/m³ [clock of its sender: stepped]"));
   estimate.header.replay = true;
-  EXPECT_THAT(one_line(Message(estimate)), ::testing::EndsWith("Pa s/m3")) << "dated by the recording";
+  EXPECT_THAT(one_line(Message(estimate)), ::testing::EndsWith("Pa·s/m³")) << "dated by the recording";
   estimate.header.replay = false;
   estimate.header.clock_quality = ClockQuality::synchronised;
-  EXPECT_THAT(one_line(Message(estimate)), ::testing::EndsWith("Pa s/m3"));
+  EXPECT_THAT(one_line(Message(estimate)), ::testing::EndsWith("Pa·s/m³"));
   estimate.estimated = false;
   estimate.reasons = {"cut"};
   EXPECT_THAT(one_line(Message(estimate)), HasSubstr("no estimate: cut"));
@@ -352,14 +352,14 @@ TEST(AssetView, TheLeakageOfARetractedTestIsNotShown) {
     estimate.resistance_std_Pa_s_m3 = 1e11;
     view.take(Message(estimate));
   }
-  EXPECT_THAT(view.screen(), HasSubstr("1.852e+13"));
+  EXPECT_THAT(view.screen(), HasSubstr("(18.52 ± 0.10)·10¹²"));
   RemainingLife anew;
   anew.asset_id = "A";
   anew.header = header_of_test("2031-04-12");
   anew.header.pst_id.clear();
   anew.header.source_ids = {"retraction/A/test/A-2031-05-12/2031-05-20T00:00:00Z"};
   view.take(Message(anew));
-  EXPECT_THAT(view.screen(), HasSubstr("1.867e+13"));
+  EXPECT_THAT(view.screen(), HasSubstr("(18.67 ± 0.10)·10¹²"));
 }
 
 TEST(OneLine, ToldOfNoTestAStateReportIsOverdueOrJudgedAnew) {

@@ -60,7 +60,7 @@ TEST(TestLimits, AMessageIsHeldAgainstAllOfThem) {
   EXPECT_THAT(wrong({0.0, 0.1, 0.2}, {1.0, kInfinity, 3.0}, true), HasSubstr("no sensor gives"));
   EXPECT_THAT(wrong({0.0, 0.1, 0.2}, {1.0, 3.0}), HasSubstr("another number of samples"));
   EXPECT_THAT(wrong({0.0, 0.2, 0.1}, {1.0, 2.0, 3.0}), HasSubstr("do not increase"));
-  EXPECT_THAT(wrong({0.0, kNaN, 0.1}, {1.0, 2.0, 3.0}), HasSubstr("a time that is none"));
+  EXPECT_THAT(wrong({0.0, kNaN, 0.1}, {1.0, 2.0, 3.0}), HasSubstr("an impossible time"));
 }
 
 }  // namespace

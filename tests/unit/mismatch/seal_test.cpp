@@ -38,7 +38,7 @@ TEST(Seal, ThatAgedBetweenTestsIsNoMissingPhysics) {
   EXPECT_EQ(explanation->verdict, Verdict::undetermined) << explanation->summary;
   EXPECT_TRUE(explanation->effects.empty());
   EXPECT_TRUE(explanation->explained.physics.empty());
-  EXPECT_NE(explanation->summary.find("R_CL is 2.286e+13 (2009-04-18)"), std::string::npos) << explanation->summary;
+  EXPECT_NE(explanation->summary.find("R_CL is 2.286·10¹³ (2009-04-18)"), std::string::npos) << explanation->summary;
   ASSERT_FALSE(explanation->location.empty());
   EXPECT_EQ(explanation->location.front().element, "piston_seal");
   EXPECT_FALSE(explanation->prognosis.known) << "one condition for tests of different ones";
@@ -87,7 +87,7 @@ TEST(Seal, ThatWasReplacedBetweenTestsNamesNoLaw) {
   ASSERT_TRUE(explanation) << explanation.error().describe();
   EXPECT_EQ(explanation->verdict, Verdict::undetermined) << explanation->summary;
   EXPECT_TRUE(explanation->effects.empty());
-  EXPECT_NE(explanation->summary.find("R_CL is 1.2e+13 (1970-01-31), 2.6"), std::string::npos) << explanation->summary;
+  EXPECT_NE(explanation->summary.find("R_CL is 1.2·10¹³ (1970-01-31), 2.6"), std::string::npos) << explanation->summary;
   EXPECT_NE(explanation->summary.find("not wear"), std::string::npos) << explanation->summary;
 }
 

@@ -49,13 +49,13 @@ TEST(Summary, SaysOfASensorThatTheRecordingsShowIt) {
   found.verdict = Verdict::mismatch;
   found.effects.resize(1);
   found.effects[0].what = {"sensor_gain", "", "sensor:pressure_a", "g y", ""};
-  EXPECT_EQ(summary_of(found).find("The recordings show sensor gain at the sensor of pressure A. "), 0U)
+  EXPECT_EQ(summary_of(found).find("The recordings show sensor gain at the sensor of pressure A."), 0U)
       << summary_of(found);
   found.effects.resize(2);
   found.effects[1].what = {"coulomb_friction", "", "piston", "F_c tanh(v / v_s)", ""};
   EXPECT_EQ(
       summary_of(found).find("The simulation lacks coulomb friction at the piston, and the recordings show sensor "
-                             "gain at the sensor of pressure A. "),
+                             "gain at the sensor of pressure A."),
       0U)
       << summary_of(found);
 }

@@ -174,7 +174,7 @@ Explanation example_explanation() {
                            .sentence = "Without the friction the seal looked 13 % more worn than it is."};
   explanation.next_test = "Record a stroke at 0.2 mm/s: it separates Stribeck from Coulomb friction.";
   explanation.summary =
-      "The piston meets dry friction of 4.0 kN that the model lacked, larger near standstill. With it the simulation "
+      "The piston meets dry friction of 4.0 kN that the model lacked, larger near standstill. With it, the simulation "
       "agrees with the recordings that were held out.";
   explanation.notes = {"Noise was taken from rest segments.", "117 laws were tried."};
   return explanation;

@@ -128,14 +128,14 @@ TEST(AdmissionOfDates, ATimeThatCannotBeCountedWithIsNone) {
        {std::numeric_limits<std::int64_t>::max(), std::numeric_limits<std::int64_t>::min(), std::int64_t{-1}}) {
     RawSamples raw = live_test("2031-04-10T00:00:00Z");
     raw.start_time_ns = wild;
-    EXPECT_THAT(refusal(raw), HasSubstr("is none from 1970 to 2260"));
+    EXPECT_THAT(refusal(raw), HasSubstr("is not between 1970 and 2260"));
     MaintenanceEvent event;
     event.header.event_time_known = true;
     event.header.event_time_ns = wild;
-    EXPECT_THAT(refusal(event), HasSubstr("is none from 1970 to 2260"));
+    EXPECT_THAT(refusal(event), HasSubstr("is not between 1970 and 2260"));
   }
   EXPECT_THAT(refusal(live_test("1969-12-31T00:00:00Z")),
-              HasSubstr("its start time, 1969-12-31T00:00:00Z, is none from 1970 to 2260; correct it"));
+              HasSubstr("its start time, 1969-12-31T00:00:00Z, is not between 1970 and 2260; correct it"));
 }
 
 RawSamples test_of(const std::string& asset_id) {
@@ -237,7 +237,7 @@ TEST(AdmissionOfSamples, ATestOfNoAssetIsRefusedByName) {
 TEST(AdmissionOfSamples, BlocksOfATestCountFromZero) {
   RawSamples raw = live_test("2031-04-10T00:00:00Z");
   raw.block_number = std::numeric_limits<std::uint64_t>::max();
-  EXPECT_THAT(refusal(raw), HasSubstr("block 18446744073709551615 is none of a test"));
+  EXPECT_THAT(refusal(raw), HasSubstr("block 18446744073709551615 is not possible"));
 }
 
 TEST(AdmissionOfMadeUpTests, TheyDoNotMixWithRecordedOnes) {
@@ -267,7 +267,7 @@ TEST(AdmissionOfEvents, OnlyWhatIsKnownIsTakenIn) {
   };
   EXPECT_EQ(said("seal_replaced", "maintenance_event/XT03-MV2/2031"), "");
   EXPECT_EQ(said("actuator_replaced", ""), "");
-  EXPECT_THAT(said("seal_replace", ""), HasSubstr("its kind, 'seal_replace', is none of actuator_replaced, "));
+  EXPECT_THAT(said("seal_replace", ""), HasSubstr("its kind, 'seal_replace', is not one of actuator_replaced, "));
   const std::string one = retraction_id("XT03-MV2", kTestRetracted, "XT03-MV2-2031-x", kNow);
   EXPECT_EQ(said("test_retracted", one), "");
   EXPECT_THAT(said("tests_retracted", one), HasSubstr("does not say what is retracted"));

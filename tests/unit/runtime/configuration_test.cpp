@@ -197,8 +197,8 @@ TEST(ConfigurationTest, WhatTheYamlLibraryPassesOverIsNamed) {
 TEST(ConfigurationTest, AMissingFileIsNamed) {
   const YamlPlace place;
   EXPECT_THAT(faults(place, place.directory()),
-              ElementsAre(::testing::AllOf(HasSubstr("sealwatch.yaml: is not there"),
-                                           HasSubstr("--config or in SEALWATCH_CONFIG"), HasSubstr("/etc/sealwatch"))));
+              ElementsAre(::testing::AllOf(HasSubstr("sealwatch.yaml: does not exist"),
+                                           HasSubstr("--config or SEALWATCH_CONFIG"), HasSubstr("/etc/sealwatch"))));
   // A relative path is told in full: where the program was started is the reader's first question.
   const auto relative = load_configuration("no/such/folder");
   ASSERT_FALSE(relative);

@@ -72,7 +72,7 @@ TEST_F(JournalReaderTest, FindsWhatARunningServiceConcluded) {
 TEST_F(JournalReaderTest, MakesNoJournalAndRefusesAnothers) {
   const Result<JournalReader> none = JournalReader::open(connection(), "state_detection");
   ASSERT_FALSE(none);
-  EXPECT_THAT(none.error().describe(), HasSubstr("state_detection.db: is not there"));
+  EXPECT_THAT(none.error().describe(), HasSubstr("state_detection.db: does not exist"));
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
 
   ASSERT_TRUE(Journal::open(connection(), "state_detection"));

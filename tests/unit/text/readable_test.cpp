@@ -39,6 +39,18 @@ TEST(Readable, WithItsError) {
   EXPECT_EQ(readable_with_error(0.5, 12.0, "1"), "0 ± 12");
 }
 
+TEST(Readable, NumbersOfSentencesWriteTheirPowersOfTen) {
+  EXPECT_EQ(in_sentence(64400.0), "64400");
+  EXPECT_EQ(in_sentence(2.611e13), "2.61·10¹³");
+  EXPECT_EQ(in_sentence(-5e-5), "−5·10⁻⁵");
+  EXPECT_EQ(in_sentence(0.213), "0.213");
+}
+
+TEST(Readable, QuantitiesBesideTheirLimitsKeepTheirUnit) {
+  EXPECT_EQ(with_unit(5.907e12, "Pa s/m3"), "5.91·10¹² Pa·s/m³");
+  EXPECT_EQ(with_unit(1.2, "1"), "1.2");
+}
+
 TEST(Readable, ASharePretendsNoCertainty) {
   EXPECT_EQ(percent_text(0.97), "97 %");
   EXPECT_EQ(percent_text(0.9999999), "over 99.9 %");

@@ -6,6 +6,7 @@
 
 #include "sealwatch/model/eha_switched.hpp"
 #include "services/common/text/numbers.hpp"
+#include "services/common/text/readable.hpp"
 
 namespace sealwatch {
 namespace {
@@ -104,17 +105,15 @@ std::optional<ClosedValveLeakage> closed_valve_leakage(const AssetConfig& asset,
 std::string in_words(const ClosedValveLeakage& leakage) {
   std::string text = "while the valves were closed (";
   text.append(text::significant(leakage.duration_s)).append(" s, pressures up to ");
-  text.append(text::significant(leakage.largest_difference_Pa)).append(" Pa apart) ");
+  text.append(text::readable(leakage.largest_difference_Pa, "Pa")).append(" apart) ");
   const double G = leakage.conductance, error = leakage.conductance_std;
   if (G > kSeen * error)
     return text.append("R_CL was ")
-        .append(text::significant(1.0 / G))
-        .append(" +- ")
-        .append(text::significant(error / (G * G)))
-        .append(" Pa s/m3, with the asset's own compliance of the chambers");
+        .append(text::readable_with_error(1.0 / G, error / (G * G), "Pa s/m3"))
+        .append(", with the asset's own compliance of the chambers");
   return text.append("no internal leakage was seen: with the asset's own compliance of the chambers R_CL is above ")
-      .append(text::significant(1.0 / (std::max(G, 0.0) + kOneSided95 * error)))
-      .append(" Pa s/m3 (95 %)");
+      .append(text::readable(1.0 / (std::max(G, 0.0) + kOneSided95 * error), "Pa s/m3"))
+      .append(" (95 %)");
 }
 
 }  // namespace sealwatch

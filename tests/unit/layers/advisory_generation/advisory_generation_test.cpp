@@ -117,7 +117,7 @@ TEST_F(AdvisoryGenerationTest, ReasonsNameTheTestAndSpeakToPeople) {
   EXPECT_THAT(
       advisory.reasons,
       Contains("difference from the simulation in pressure A in region warning: 310 % (warning above 300, alarm "
-               "above 1e+03; by the model of the asset file)"));
+               "above 1000; by the model of the asset file)"));
 }
 
 TEST_F(AdvisoryGenerationTest, AConditionOfAnEarlierTestIsNamedSo) {

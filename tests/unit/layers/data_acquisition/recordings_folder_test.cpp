@@ -409,7 +409,8 @@ TEST_F(FolderReaderTest, OneThatWasTakenInPartAndRemovedEndsItsTest) {
   EXPECT_FALSE(ends[0].aborted) << "it is still there, and taken whole";
   EXPECT_EQ(ends[1].recording_id, "april");
   EXPECT_EQ(ends[1].abort_reason, "cut: the recording was removed from the folder before all of it was taken");
-  EXPECT_THAT(errors_, testing::ElementsAre(testing::HasSubstr("april: asset XT03-MV2: was removed before all")));
+  EXPECT_THAT(errors_, testing::ElementsAre(
+                           testing::HasSubstr("april: asset XT03-MV2: was removed before it was read completely")));
 }
 
 /// The main loop slept up to a second for each recording of a folder.

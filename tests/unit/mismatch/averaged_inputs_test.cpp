@@ -19,15 +19,7 @@ AssetConfig with_spring(AssetConfig asset, double stiffness) {
 }
 
 Recording held_recording_of(const AssetConfig& truth, double load) {
-  AssetConfig loaded = truth;
-  loaded.parameters.at("phi").value *= load;
-  TimeSeries samples = standard_pst(loaded, 100.0);
-  samples.input_hold = true;
-  Recording recording;
-  recording.asset_id = truth.asset_id;
-  recording.file = recording.recording_id = recording.content_hash = number(load);
-  recording.samples = simulated(loaded, std::move(samples), 1.0);
-  return recording;
+  return recording_of(truth, load, [](TimeSeries& samples) { samples.input_hold = true; });
 }
 
 Data held_data_of(const AssetConfig& truth) {

@@ -38,15 +38,22 @@ inline TimeSeries simulated_test(const AssetConfig& truth, double noise_share, T
   return simulated(truth, standard_pst(truth, 100.0), noise_share, clean);
 }
 
-/// Such a test under `load` times the actuator's, as a recording of that name.
-inline Recording recording_of(const AssetConfig& truth, double load) {
+/// A test under `load` times the actuator's, as a recording of that name. `course`: changes the standard test's input.
+template <class Course>
+Recording recording_of(const AssetConfig& truth, double load, Course course) {
   AssetConfig loaded = truth;
   loaded.parameters.at("phi").value *= load;
+  TimeSeries samples = standard_pst(loaded, 100.0);
+  course(samples);
   Recording recording;
   recording.asset_id = truth.asset_id;
   recording.file = recording.recording_id = recording.content_hash = number(load);
-  recording.samples = simulated_test(loaded, 1.0);
+  recording.samples = simulated(loaded, std::move(samples), 1.0);
   return recording;
+}
+
+inline Recording recording_of(const AssetConfig& truth, double load) {
+  return recording_of(truth, load, [](TimeSeries&) {});
 }
 
 }  // namespace sealwatch::mismatch

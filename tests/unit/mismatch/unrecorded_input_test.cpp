@@ -65,18 +65,12 @@ TEST(UnrecordedInput, NamesNoLaw) {
 
 /// The standard test with a voltage that a controller changes at every sample, linear between two.
 Recording known_course(const AssetConfig& truth, double load) {
-  AssetConfig loaded = truth;
-  loaded.parameters.at("phi").value *= load;
-  TimeSeries samples = standard_pst(loaded, 100.0);
-  std::mt19937 random(20261128);
-  std::normal_distribution<double> restless(0.0, 0.2);
-  for (double& volts : std::ranges::find(samples.channels, "motor_voltage", &Series::name)->values)
-    volts += restless(random);
-  Recording recording;
-  recording.asset_id = truth.asset_id;
-  recording.file = recording.recording_id = recording.content_hash = number(load);
-  recording.samples = simulated(loaded, std::move(samples), 1.0);
-  return recording;
+  return recording_of(truth, load, [](TimeSeries& samples) {
+    std::mt19937 random(20261128);
+    std::normal_distribution<double> restless(0.0, 0.2);
+    for (double& volts : std::ranges::find(samples.channels, "motor_voltage", &Series::name)->values)
+      volts += restless(random);
+  });
 }
 
 UnrecordedInput of(const Recording& test) {

@@ -122,11 +122,6 @@ void leave_out(const std::vector<Eigen::Index>& samples, PemRecording& recording
   for (const Eigen::Index sample : samples) recording.weight.segment(sample * channels, channels).setZero();
 }
 
-bool is_exact_enough(const FittedModel& model) {
-  constexpr double kEnough = 3.0;
-  return model.problem.simulation_options.relative_tolerance <= kEnough * tolerance_for(model);
-}
-
 // `from`: where the search sets out; null: not known.
 Result<PemProblem> problem_of(const AssetConfig& asset, const Data& data, const ActuatorFitOptions& options,
                               const FittedModel* from) {
@@ -188,11 +183,15 @@ Result<FittedModel> fit_from(const FittedModel& start, const PemPoint& beside, c
   Result<PemOptimum> optimum =
       search(*problem, std::move(point), options, {.kept = derivatives_from(start, places, *problem), .bound = bound});
   if (!optimum) return fail(optimum.error());
-  FittedModel model = model_at(asset, std::move(*problem), std::move(*optimum));
-  return as_exact_as_it_fits(std::move(model), data, threads, iterations, bound);
+  return model_at(asset, std::move(*problem), std::move(*optimum));
 }
 
 }  // namespace
+
+bool is_exact_enough(const FittedModel& model) {
+  constexpr double kEnough = 3.0;
+  return model.problem.simulation_options.relative_tolerance <= kEnough * tolerance_for(model);
+}
 
 double tolerance_for(const FittedModel& model) {
   constexpr double kFarOff = 100.0;  // times the noise: nearer, it decides what is told apart
@@ -208,7 +207,11 @@ bool at_bound(const Unknown& unknown, double at) {
 
 Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const FittedModel* start, int threads,
                               int iterations, const SearchBound& bound) {
-  if (start != nullptr) return fit_from(*start, {}, asset, data, threads, iterations, bound);
+  if (start != nullptr) {
+    Result<FittedModel> model = fit_from(*start, {}, asset, data, threads, iterations, bound);
+    if (!model) return model;
+    return as_exact_as_it_fits(std::move(*model), data, threads, iterations, bound);
+  }
   ActuatorFitOptions options = search_options(threads, iterations);
   Result<PemProblem> problem = problem_of(asset, data, options, nullptr);
   if (!problem) return fail(problem.error());
@@ -229,8 +232,10 @@ Result<FittedModel> fit_model_beside(const PemPoint& beside, const AssetConfig& 
 }
 
 Result<FittedModel> fit_to_some(const FittedModel& model, const Data& data, std::span<const std::size_t> places,
-                                int threads) {
-  return fit_from(model, {}, model.asset, data, threads, kSearchIterations, {}, places);
+                                int threads, int iterations) {
+  Result<FittedModel> refitted = fit_from(model, {}, model.asset, data, threads, iterations, {}, places);
+  if (!refitted) return refitted;
+  return as_exact_as_it_fits(std::move(*refitted), data, threads, iterations, {});
 }
 
 Result<FittedModel> continue_fit(const FittedModel& model, const Data& data, int threads, int iterations,

@@ -54,6 +54,8 @@ struct FittedModel {
 /// Relative tolerance of simulations that miss as that model does: beyond a hundred times the noise they err by the same
 /// share of what is missed. Steps are then as few as the answer needs.
 [[nodiscard]] double tolerance_for(const FittedModel& model);
+/// Whether its simulations are about as exact as that.
+[[nodiscard]] bool is_exact_enough(const FittedModel& model);
 
 /// Of a search, where nothing else is said.
 inline constexpr int kSearchIterations = 30;
@@ -63,15 +65,16 @@ inline constexpr int kSearchIterations = 30;
 [[nodiscard]] Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const FittedModel* start,
                                             int threads, int iterations = kSearchIterations,
                                             const SearchBound& bound = {});
-/// The same from values that `beside` changes (of as many unknowns as `start` has; empty: none), until `bound` is out of
-/// reach.
+/// The first iterations of the same, from values that `beside` changes (of as many unknowns as `start` has; empty: none),
+/// until `bound` is out of reach. Simulations stay as exact as they were where it sets out.
 [[nodiscard]] Result<FittedModel> fit_model_beside(const PemPoint& beside, const AssetConfig& asset, const Data& data,
                                                    const FittedModel& start, int iterations, const SearchBound& bound);
 
 /// Fits the model anew to some of its recordings (or windows), from where it ended. `places`: theirs among its own, one
 /// for each of `data`.
 [[nodiscard]] Result<FittedModel> fit_to_some(const FittedModel& model, const Data& data,
-                                              std::span<const std::size_t> places, int threads);
+                                              std::span<const std::size_t> places, int threads,
+                                              int iterations = kSearchIterations);
 
 /// Goes on with the search that ended at `model`, with the same unknowns.
 [[nodiscard]] Result<FittedModel> continue_fit(const FittedModel& model, const Data& data, int threads, int iterations,

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <string>
 
 #include "services/common/mismatch/criterion.hpp"
+#include "services/common/mismatch/explain_input.hpp"
 #include "services/common/mismatch/ranking.hpp"
 #include "services/common/mismatch/verdict.hpp"
 
@@ -16,6 +19,8 @@ namespace {
 constexpr double kFarOff = 0.1;      // of the spread of a channel
 constexpr double kNoise = 1.1;       // times the noise's variance: its own size is known to a tenth
 constexpr double kTimeShare = 0.25;  // of the time limit: a start, and no more
+constexpr int kIterations = 8;       // to see whether simulations come nearer where they are held
+constexpr double kEnoughRows = 8000.0;
 // Within so many distances between samples: what adds up slowly shows; and, where that is still far off, noise is averaged
 // and little drifts.
 constexpr double kLoosely = 100.0, kTightly = 10.0;
@@ -81,6 +86,29 @@ bool is_far_off(const FittedModel& model) {
   });
 }
 
+// Of recordings that are missed by far, some show what is missing as well as all: those that are missed most, until they
+// have rows enough. Windows are few enough already.
+std::vector<std::size_t> missed_most(const FittedModel& model, const Data& data) {
+  std::vector<std::size_t> places(data.samples.size());
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  if (!data.groups.empty()) return places;
+  const auto misses = [&](std::size_t k) { return model.optimum.at_optimum[k].residual.squaredNorm(); };
+  std::ranges::stable_sort(places, std::greater<>(), misses);
+  double rows = 0.0;
+  const auto enough = std::ranges::find_if(places, [&](std::size_t k) {
+    return (rows += static_cast<double>(data.samples[k].time_s.size())) >= kEnoughRows;
+  });
+  if (enough != places.end()) places.erase(enough + 1, places.end());
+  std::ranges::sort(places);
+  return places;
+}
+
+Data some_of(Data data, const std::vector<std::size_t>& places) {
+  for (std::size_t k = data.samples.size(); k-- > 0;)
+    if (!std::ranges::binary_search(places, k)) data = without(data, k);
+  return data;
+}
+
 // Fitted to the recordings while it is held, as loosely as leaves it near; nothing where even held tightly it comes no
 // nearer: too little of its state is measured. What the free run's fit bent its parameters to is no start to judge by.
 // Windows set out from what was measured, and are held loosely by that: only where they are far off, and near at once
@@ -95,7 +123,7 @@ std::optional<Held> hold(const FittedModel& baseline, const Data& data, const De
   for (const double samples : {kLoosely, kTightly}) {
     if (in_windows && samples == kLoosely) continue;
     Data held = held_data(data, samples, until);
-    Result<FittedModel> model = fit_model(baseline.asset, held, &baseline, threads, in_windows ? 0 : kSearchIterations);
+    Result<FittedModel> model = fit_model(baseline.asset, held, &baseline, threads, in_windows ? 0 : kIterations);
     if (!model) continue;
     const bool nearer = share_explained(misfit_of(baseline), misfit_of(*model)) >= kExplainedAtLeast;
     if (!is_far_off(*model) || (samples == kTightly && nearer && !in_windows))
@@ -112,17 +140,20 @@ HeldStart start_from_held(const FittedModel& baseline, const Data& data, const E
                                     data.deadline == nullptr ? options.time_limit_s : data.deadline->left_s());
   Deadline until(options.cancel);
   until.set_in(allowed_s);
-  const std::optional<Held> held = hold(baseline, data, until, options.threads);
+  const std::vector<std::size_t> places = missed_most(baseline, data);
+  const Data some = some_of(data, places);
+  const Result<FittedModel> there = fit_to_some(baseline, some, places, options.threads, 0);
+  if (!there) return start;
+  std::optional<Held> held = hold(*there, some, until, options.threads);
   if (!held) return start;
-  Result<FittedModel> model = continue_fit(held->model, held->data, options.threads, kSearchIterations);
-  if (!model) return start;
-  Trial found{{}, std::make_shared<const FittedModel>(std::move(*model))};
+  Trial found =
+      polished({{}, std::make_shared<const FittedModel>(std::move(held->model))}, held->data, options.threads);
   while (excess(*found.model) > kNoise && static_cast<int>(found.effects.size()) < options.maximum_laws &&
          add_best(found, held->data, options)) {
   }
   start.was_cut = until.was_met();
   if (found.effects.empty()) return start;
-  Result<FittedModel> free = fit_model(found.model->asset, data, found.model.get(), options.threads);
+  Result<FittedModel> free = fit_model(found.model->asset, data, &baseline, options.threads);
   if (!free) return start;
   if (share_explained(misfit_of(baseline), misfit_of(*free)) >= kExplainedAtLeast)
     start.trial = Trial{.effects = std::move(found.effects),

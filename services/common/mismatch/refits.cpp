@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <ranges>
+#include <utility>
 
 #include "sealwatch/model/law_sizes.hpp"
 #include "services/common/core/in_parallel.hpp"
@@ -48,9 +50,9 @@ Result<FittedModel> sizes_first(AssetConfig asset, const std::vector<LawStart>& 
       if (!parameter.strength)
         asset.physics[asset.physics.size() - added.size() + k].parameters.at(std::string(parameter.name)).estimate =
             false;
-  const Result<FittedModel> sized = fit_model(asset, data, &from, 1, kFirstRound);
+  const Result<FittedModel> sized = fit_model_beside({}, asset, data, from, kFirstRound, {});
   const bool sizes_fit = sized && !came_to_an_end(*sized, added);
-  return fit_model(free, data, sizes_fit ? &*sized : &from, 1, kFirstRound, bound);
+  return fit_model_beside({}, free, data, sizes_fit ? *sized : from, kFirstRound, bound);
 }
 
 // What changes beside all of them; empty where that is not known.
@@ -67,6 +69,21 @@ PemPoint beside_all(const std::vector<LawStart>& added, double share) {
     for (std::size_t r = 0; r < all.own.size(); ++r) add(law.beside.own[r], all.own[r]);
   }
   return all;
+}
+
+// Values of the asset file that are known within a tolerance.
+std::vector<KnownValue> known_parameters(const Data& data, const AssetConfig& asset) {
+  std::vector<KnownValue> known;
+  std::ranges::copy_if(data.known, std::back_inserter(known),
+                       [&](const KnownValue& value) { return asset.parameters.contains(value.name); });
+  return known;
+}
+
+Data without_known(Data data, const std::vector<KnownValue>& known) {
+  std::erase_if(data.known, [&](const KnownValue& value) {
+    return std::ranges::find(known, value.name, &KnownValue::name) != known.end();
+  });
+  return data;
 }
 
 // A trial while it is being worked on.
@@ -107,10 +124,11 @@ class GoesOn {
   [[nodiscard]] SearchBound bound() const {
     return {.cost = 0.5 * limit_, .optimism = gross_ ? kHopeful : kOptimistic};
   }
+  /// Of searches with known values as they are known: their tolerances come later.
+  [[nodiscard]] SearchBound bound_of_first() const { return {.cost = 0.5 * kHopeful * best_, .optimism = kHopeful}; }
 
-  [[nodiscard]] bool at_first(const FittedModel& model) const {
-    return may_come_near(model) && (!gross_ || model.misfit <= kHopeful * best_);
-  }
+  [[nodiscard]] bool at_first(const FittedModel& model) const { return may_come_near(model) && is_hopeful(model); }
+  [[nodiscard]] bool is_hopeful(const FittedModel& model) const { return !gross_ || model.misfit <= kHopeful * best_; }
   [[nodiscard]] bool after(const FittedModel& before, const FittedModel& model) const {
     const bool nearer = model.misfit - best_ <= kNearer * std::max(before.misfit - best_, 0.0);
     return may_come_near(model) && nearer;
@@ -153,12 +171,13 @@ Trial with_derivatives(Trial trial, const Data& data, int threads) {
   return trial;
 }
 
-// A search that ran out of iterations goes on from where it is.
 Trial polished(Trial trial, const Data& data, int threads) {
   constexpr int kRounds = 3;
-  for (int round = 0; round < kRounds && !trial.model->optimum.converged; ++round) {
+  for (int round = 0; round < kRounds; ++round) {
+    const bool exact = is_exact_enough(*trial.model);
+    if (exact && trial.model->optimum.converged) break;
     Result<FittedModel> further = continue_fit(*trial.model, data, threads, kSearchIterations);
-    if (!further || further->misfit > trial.model->misfit) break;
+    if (!further || (exact && further->misfit > trial.model->misfit)) break;
     trial.model = std::make_shared<const FittedModel>(std::move(*further));
   }
   return trial;
@@ -168,11 +187,20 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
                          int threads, const RefitOptions& options) {
   // In a gross misfit the linear model of a free run says too little of what changes beside a law.
   const bool tells_little = excess(*from.model) > kGross && data.held_within_s == 0.0;
+  const std::vector<KnownValue> known =
+      excess(*from.model) > kGross ? known_parameters(data, from.model->asset) : std::vector<KnownValue>{};
+  const Data as_known = known.empty() ? Data{} : without_known(data, known);
+  const Data& first = known.empty() ? data : as_known;
+  const auto bound_after = [&](const FittedModel& best) {
+    const GoesOn goes_on(best, options.to_beat);
+    return known.empty() ? goes_on.bound() : goes_on.bound_of_first();
+  };
   SearchBound bound;
-  if (std::isfinite(options.to_beat)) bound = GoesOn(*from.model, options.to_beat).bound();
+  if (std::isfinite(options.to_beat)) bound = bound_after(*from.model);
   const auto start = [&](const std::vector<LawStart>& added, double share) -> Refit {
     Refit refit{.effects = from.effects, .model = nullptr};
     AssetConfig asset = from.model->asset;
+    for (const KnownValue& value : known) asset.parameters.at(value.name).value = value.value;
     for (const std::size_t out : options.in_place_of | std::views::reverse) {
       asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(refit.effects.size() - out));
       refit.effects.erase(refit.effects.begin() + static_cast<std::ptrdiff_t>(out));
@@ -184,11 +212,11 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
       asset = with_law(std::move(asset), *law.effect.law, law.effect.element, parameters);
     }
     const auto set_out = [&](const PemPoint& beside) {
-      return fit_model_beside(beside, asset, data, *from.model, kFirstRound, bound);
+      return fit_model_beside(beside, asset, first, *from.model, kFirstRound, bound);
     };
     const PemPoint beside = tells_little ? PemPoint{} : beside_all(added, share);
     Result<FittedModel> model =
-        options.in_place_of.empty() ? set_out(beside) : sizes_first(asset, added, data, *from.model, bound);
+        options.in_place_of.empty() ? set_out(beside) : sizes_first(asset, added, first, *from.model, bound);
     if (!model && !beside.own.empty()) model = set_out({});  // where the linear model leads, nothing can be simulated
     if (model) refit.model = std::make_shared<FittedModel>(std::move(*model));
     return refit;
@@ -211,23 +239,36 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
       if (refit.model != nullptr) refits.push_back(std::move(refit));
     if (refits.empty()) continue;
     std::ranges::stable_sort(refits, {}, [](const Refit& refit) { return refit.model->misfit; });
-    bound = GoesOn(*refits.front().model, options.to_beat).bound();
+    bound = bound_after(*refits.front().model);
   }
   if (refits.empty()) return {};
-  const GoesOn goes_on(*refits.front().model, options.to_beat);
+  // Those that go on do so with all that is known within a tolerance, the first two ahead of the others.
+  std::shared_ptr<const FittedModel> best = refits.front().model;
   const auto further = [&](Refit refit) -> Refit {
-    bool open = goes_on.at_first(*refit.model);
+    const GoesOn goes_on(*best, options.to_beat);
+    bool open = goes_on.at_first(*refit.model) || !is_exact_enough(*refit.model);
+    if (!known.empty() && goes_on.is_hopeful(*refit.model)) {
+      Result<FittedModel> model = fit_model(refit.model->asset, data, refit.model.get(), 1, kRound, goes_on.bound());
+      if (!model) return refit;
+      refit.model = std::make_shared<FittedModel>(std::move(*model));
+      open = goes_on.at_first(*refit.model);
+    }
     for (int round = 0; round < kRounds && open; ++round) {
-      Result<FittedModel> model = continue_fit(*refit.model, data, 1, kRound, bound);
-      if (!model || model->misfit > refit.model->misfit) break;
+      Result<FittedModel> model = continue_fit(*refit.model, data, 1, kRound, goes_on.bound());
+      if (!model || (is_exact_enough(*refit.model) && model->misfit > refit.model->misfit)) break;
       open = goes_on.after(*refit.model, *model);
       refit.model = std::make_shared<FittedModel>(std::move(*model));
     }
     return refit;
   };
-  std::ranges::move(
-      in_parallel<Refit>(std::min(refits.size(), kGoOn), threads, [&](std::size_t k) { return further(refits[k]); }),
-      refits.begin());
+  const std::size_t go_on = std::min(refits.size(), kGoOn), ahead = known.empty() ? go_on : std::min(go_on, kAhead);
+  for (std::size_t begin = 0, end = ahead; begin < go_on; begin = std::exchange(end, go_on)) {
+    const auto gone_on =
+        in_parallel<Refit>(end - begin, threads, [&](std::size_t k) { return further(refits[begin + k]); });
+    std::ranges::copy(gone_on, refits.begin() + static_cast<std::ptrdiff_t>(begin));
+    for (const Refit& refit : gone_on)
+      if (refit.model->misfit < best->misfit) best = refit.model;
+  }
   std::erase_if(refits, lost_its_core);
   return trials_of(std::move(refits));
 }

@@ -1,6 +1,7 @@
 #include "services/common/mismatch/other_shapes.hpp"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "services/common/mismatch/candidates.hpp"
@@ -16,6 +17,8 @@ constexpr std::size_t kOtherShapes = 8;  // refits of the best law from other po
 constexpr std::size_t kFormStarts = 3;   // and of each closed form that bears its id, in a gross misfit;
 constexpr std::size_t kNearShapes = 3;   // near the noise the linearised model tells the best points of the grid,
 constexpr std::size_t kNearStarts = 1;   // and a form that contains the law begins where that ended
+constexpr double kNearly = 0.5;          // of what the best form promises
+constexpr std::size_t kStartsOfForm = 2;
 constexpr double kFar = 100.0;           // times the noise: further off no law's form can be told
 constexpr std::size_t kOtherLaws = 4;    // refits in place of a law that was found before another one
 constexpr std::size_t kSingleLaws = 10;  // refits of one law for several
@@ -78,6 +81,36 @@ std::vector<std::vector<LawStart>> laws_of(const std::string& element, const Scr
     if (candidate.element == element && known < most && starts.size() < kSingleLaws)
       starts.push_back({{{candidate.law, element}, usual_size(candidate, variant->point)}});
   }
+  return starts;
+}
+
+// Of these starts in place of one law, those of the laws that promise most. Near the noise two forms of a law differ by
+// little, and the linear model tells what their difference brings: no more than what the other brings beside it. All of
+// them further off.
+std::vector<std::vector<LawStart>> most_promising(std::vector<std::vector<LawStart>> starts, const FittedModel& model,
+                                                  const Data& data, const ExplainOptions& options) {
+  if (starts.empty() || excess(model) > kGross) return starts;
+  std::map<const Law*, double> promised;
+  for (const std::vector<LawStart>& start : starts) promised[start.front().effect.law] = 0.0;
+  std::vector<Candidate> laws;
+  for (const bool closed_forms : {false, true})
+    for (Candidate& law : find_candidates(*model.problem.recordings.front().simulation, {}, closed_forms))
+      if (promised.contains(law.law) && law.element == starts.front().front().effect.element)
+        laws.push_back(std::move(law));
+  const auto beside =
+      screen_laws(model, std::move(laws), data, {.draws = 1, .seed = options.seed, .threads = options.threads});
+  if (!beside) return starts;
+  for (const Variant& variant : beside->variants) {
+    double& most = promised.at(beside->candidates[variant.candidate].law);
+    most = std::max(most, variant.gain);
+  }
+  double least = kCannotTell * dispersion(model) / kOptimistic;
+  for (const auto& [law, gain] : promised) least = std::max(least, kNearly * gain);
+  std::map<const Law*, std::size_t> kept;
+  std::erase_if(starts, [&](const std::vector<LawStart>& start) {
+    const Law* law = start.front().effect.law;
+    return promised.at(law) < least || kept[law]++ >= kStartsOfForm;
+  });
   return starts;
 }
 
@@ -163,7 +196,8 @@ void from_other_shapes(Naming& naming, const Trial& before, const Screening& ask
   for (std::size_t added = before.effects.size(); added < naming.best.effects.size(); ++added) {
     const auto& physics = naming.best.model->asset.physics;
     const PhysicsTerm& term = physics[physics.size() - naming.best.effects.size() + added];
-    const auto starts = other_starts(naming.best.effects[added], term, asked, forms, gross);
+    const auto starts = most_promising(other_starts(naming.best.effects[added], term, asked, forms, gross),
+                                       *naming.best.model, data, options);
     for (Trial& trial : refit(naming.best, starts, data, options.threads,
                               {.in_place_of = {added}, .to_beat = naming.best.model->misfit}))
       trials.push_back(std::move(trial));
@@ -181,6 +215,7 @@ void another_law_for_each(Naming& naming, const Data& data, const ExplainOptions
   for (std::size_t slot = 0; slot + 1 < naming.best.effects.size(); ++slot) {
     const std::optional<Trial> fewer = without_law(naming, naming.best, slot, data, options.threads);
     if (!fewer) continue;
+    naming.trials.push_back(*fewer);
     const auto left = screen(*fewer->model, data, {.seed = options.seed, .threads = options.threads});
     if (!left) continue;
     std::vector<std::vector<LawStart>> starts;

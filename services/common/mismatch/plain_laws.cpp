@@ -1,6 +1,7 @@
 #include "services/common/mismatch/plain_laws.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "sealwatch/model/law_sizes.hpp"
 #include "services/common/mismatch/criterion.hpp"
@@ -57,16 +58,31 @@ Trial with_plain_law(const Trial& rich, std::size_t slot, const Law& plain, Asse
   return trial;
 }
 
+// By how much the criterion of a law must be lower for it to stay where a plainer one is.
+double ahead_of_plain(const FittedModel& model) { return excess(model) > kGross ? kRoughly * kWorthAnother : kAsGood; }
+
+// The plain law's search is not worth going on once it cannot come to where it is preferred, with its fewer parameters.
+SearchBound worth_preferring(const FittedModel& rich, std::size_t fewer) {
+  const double phi = dispersion(rich);
+  const double price = static_cast<double>(fewer) * std::log(rich.residuals);
+  return {.cost = 0.5 * (rich.misfit + phi * (ahead_of_plain(rich) + price)), .optimism = kOptimistic};
+}
+
 bool put_in_place(Naming& naming, std::size_t slot, const Law& plain, const Data& data, int threads) {
   AssetConfig asset;
+  const FittedModel& rich = *naming.best.model;
+  const std::size_t before = naming.best.effects[slot].law->parameters.size(), now = plain.parameters.size();
   Trial trial = with_plain_law(naming.best, slot, plain, asset);
-  Result<FittedModel> model = fit_model(asset, data, naming.best.model.get(), threads);
+  Result<FittedModel> model = fit_model(asset, data, &rich, threads, kSearchIterations,
+                                        worth_preferring(rich, before > now ? before - now : 0));
   if (!model) return false;
+  const bool cut = model->optimum.out_of_reach;
   trial.model = std::make_shared<const FittedModel>(std::move(*model));
-  trial = polished(std::move(trial), data, threads);
+  if (!cut) trial = polished(std::move(trial), data, threads);
   naming.trials.push_back(trial);
+  if (cut) return false;
   const double phi = std::min(dispersion(*naming.best.model), dispersion(*trial.model));
-  const double ahead = excess(*naming.best.model) > kGross ? kRoughly * kWorthAnother : kAsGood;
+  const double ahead = ahead_of_plain(rich);
   if (criterion(*trial.model, phi) > criterion(*naming.best.model, phi) + ahead) return false;
   naming.best = std::move(trial);
   return true;

@@ -23,10 +23,6 @@
 
 namespace sealwatch::mismatch {
 
-/// Of the time limit, before what was found is proven and told.
-inline constexpr double kSearchShare = 0.75;
-/// The same, where a search was cut: by then it is settled what of it stands, and whether a fixed value does as well.
-inline constexpr double kSettledBy = 0.9;
 /// What was not asked, where time was up.
 inline constexpr const char* kFixedValues = "the values that the asset file fixes";
 
@@ -149,6 +145,7 @@ class Analysis {
   // What is left beside a law says that something is left, not what, where it could as well sit in three other elements
   // or is no more than the law's own form may be off by; nor is a law claimed whose strength may be nothing.
   void describe_what_was_found();
+  [[nodiscard]] bool more_than_form(const LawAt& small, const LawAt& large);
   void take_out(std::size_t slot);
   // Everything that the report holds; once more with fewer laws where some are taken back.
   Status finish();

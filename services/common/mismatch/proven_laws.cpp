@@ -52,7 +52,7 @@ class Proving {
   void choose_what_carries_over() {
     if (of_.held_out.fit.samples.size() < 2) return;
     const bool is_the_proof = of_.held_out.holdout.samples.empty();
-    if (is_the_proof) time_.allow_what_is_needed();
+    is_the_proof ? time_.allow_what_is_needed() : time_.allow(kChosenBy);
     const Data none;
     const CarryOver from_others =
         carry_over({of_.held_out.fit, none, of_.held_out.window_s, of_.held_out.options, of_.held_out.kept});
@@ -60,14 +60,14 @@ class Proving {
     for (const Trial& trial : likeliest(of_.naming, kMostToCarryOver)) {
       const Worth worth = from_others.of_whole(trial);
       if (worth.whole.low > 0.0) order.emplace_back(worth.whole.gain * dispersion(*trial.model), trial);
-      time_.allow(1.0);
+      time_.allow(kChosenBy);
       if (!time_.in_time("which other explanation carries over better")) break;
     }
     std::ranges::stable_sort(order, std::greater<>(), &std::pair<double, Trial>::first);
     if (is_the_proof) time_.allow_what_is_needed();
     for (auto& [gain, trial] : order) {
       const Worth worth = from_others.of(trial);
-      time_.allow(1.0);
+      time_.allow(kChosenBy);
       if (!worth.carries_over()) {
         if (!time_.in_time("whether each law of another explanation carries over")) return;
         continue;

@@ -13,6 +13,14 @@
 
 namespace sealwatch::mismatch {
 
+// Shares of the time limit.
+/// For the search, before what it found is proven and told.
+inline constexpr double kSearchShare = 0.75;
+/// Where the search was cut: by then it is settled what of it stands, and whether a fixed value does as well;
+inline constexpr double kSettledBy = 0.9;
+/// in a gross misfit also which explanation carries over best. The proof of that one has the rest.
+inline constexpr double kChosenBy = 0.9;
+
 class TimeBudget {
  public:
   TimeBudget(double limit_s, std::stop_token cancel) : limit_s_(limit_s), deadline_(std::move(cancel)) {}

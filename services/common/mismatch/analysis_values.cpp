@@ -14,6 +14,17 @@
 #include "services/common/mismatch/verdict.hpp"
 
 namespace sealwatch::mismatch {
+namespace {
+
+// In a gross misfit a value takes up some of whatever is missing: beside laws it counts where it takes half of what they
+// leave.
+bool takes_up_little(const FittedModel& laws, const FittedModel& with_value) {
+  return excess(with_value) > kGross &&
+         share_explained(laws.misfit / laws.residuals, with_value.misfit / with_value.residuals) < kExplainedAtLeast;
+}
+
+}  // namespace
+
 void Analysis::ask_values_in_place_of_own() {
   const DatasheetQuestion question{asset_, *baseline_, own_->naming.best, fit_, options_.threads};
   const auto wrong = values_alone(question, fit_.samples.size());
@@ -46,7 +57,8 @@ void Analysis::ask_the_datasheet() {
     time_.allow(1.0);  // a proof, whatever is searched further
     const bool borne_out = bears_out(*wrong, *best_.model, compared),
                beside = borne_out && take_beside_values(*wrong, instead_of, compared);
-    if (borne_out && !beside && wrong->behind < -kCannotTell)
+    if (borne_out && !beside && wrong->behind < -kCannotTell &&
+        (wrong->with.effects.empty() || !takes_up_little(*best_.model, *wrong->with.model)))
       blame_the_asset_file(*wrong, joined(instead_of, " and "), compared);
     time_.allow(kSearchShare);
   }
@@ -139,7 +151,7 @@ bool Analysis::is_among(const Effect& effect, const std::vector<Effect>& effects
 
 bool Analysis::take_beside_values(const WrongDatasheet& wrong, const std::vector<std::string>& laws,
                                   const std::vector<RecordingComparison>& compared) {
-  if (wrong.with.effects.empty()) return false;
+  if (wrong.with.effects.empty() || takes_up_little(*best_.model, *wrong.with.model)) return false;
   AssetConfig asset = baseline_->asset;
   for (const AssetValue& value : wrong.values.front()) asset = with_free_value(std::move(asset), value.name);
   Result<FittedModel> alone = fit_model(asset, prepared(fit_), wrong.with.model.get(), options_.threads);

@@ -6,6 +6,7 @@
 #include "services/common/mismatch/between_tests.hpp"
 #include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/explain_input.hpp"
+#include "services/common/mismatch/form_error.hpp"
 #include "services/common/mismatch/power.hpp"
 #include "services/common/mismatch/proof.hpp"
 #include "services/common/mismatch/remainder.hpp"
@@ -54,7 +55,9 @@ void Analysis::describe_what_was_found() {
   while (!best_.effects.empty()) {
     result_.effects = describe_effects(naming_, best_, prepared(fit_), options_, carry_over ? &*carry_over : nullptr);
     if (best_.effects.size() == 1 || gross) break;
-    const std::optional<Remainder> remainder = remainder_among(result_.effects, law_at(best_.effects.back()));
+    const std::optional<Remainder> remainder =
+        remainder_among(result_.effects, law_at(best_.effects.back()),
+                        [&](const LawAt& small, const LawAt& large) { return more_than_form(small, large); });
     if (!remainder) break;
     result_.notes.push_back(remainder->sentence);
     const auto slot = std::ranges::find_if(
@@ -62,6 +65,21 @@ void Analysis::describe_what_was_found() {
     take_out(static_cast<std::size_t>(slot - best_.effects.begin()));
   }
   if (best_.effects.empty()) result_.effects.clear();
+}
+
+bool Analysis::more_than_form(const LawAt& small, const LawAt& large) {
+  const auto slot_of = [&](const LawAt& law) {
+    const auto is_it = [&](const Effect& effect) { return same_place(law_at(effect), law); };
+    return static_cast<std::size_t>(std::ranges::find_if(best_.effects, is_it) - best_.effects.begin());
+  };
+  const std::size_t slot = slot_of(small);
+  time_.allow_what_is_needed();
+  const Trial fewer = without(best_, slot, to_prove());
+  const LawStart one{best_.effects[slot], parameters_in(best_.effects[slot], best_.model->asset)};
+  const bool more =
+      !mismatch::more_than_form(*fewer.model, best_.effects[slot_of(large)], {one}, prepared(fit_), options_).empty();
+  time_.allow(1.0);
+  return more;
 }
 
 void Analysis::take_out(std::size_t slot) {

@@ -29,16 +29,6 @@ std::vector<std::size_t> windows_of_most(const std::vector<TermPath>& paths, con
   return windows;
 }
 
-// The law's parameters in its order, as the model ended with them; none where it does not hold the law.
-std::vector<double> parameters_of(const Effect& effect, const AssetConfig& asset) {
-  std::vector<double> parameters;
-  for (const PhysicsTerm& term : asset.physics)
-    if (term.id == effect.law->id && term.element == effect.element && parameters.empty())
-      for (const LawParameter& parameter : effect.law->parameters)
-        parameters.push_back(term.parameters.at(std::string(parameter.name)).value);
-  return parameters;
-}
-
 }  // namespace
 
 void draw_missing_terms(const FittedModel& baseline, const Trial& best, const Data& data, bool whole,
@@ -47,7 +37,7 @@ void draw_missing_terms(const FittedModel& baseline, const Trial& best, const Da
   const PlantSimulation& simulation = *best.model->problem.recordings.front().simulation;
   for (const Effect& effect : best.effects) {
     const SiteKind kind = effect.law->kind;
-    const std::vector<double> parameters = parameters_of(effect, best.model->asset);
+    const std::vector<double> parameters = parameters_in(effect, best.model->asset);
     if (parameters.empty() || is_of_recording(kind)) continue;  // the equation of a recording's error says all
     const std::vector<TermPath> paths = term_paths(*best.model, effect.element, *effect.law, parameters);
     const std::size_t signal =

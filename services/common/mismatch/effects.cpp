@@ -260,6 +260,15 @@ bool same_effects(const std::vector<Effect>& a, const std::vector<Effect>& b) {
          });
 }
 
+std::vector<double> parameters_in(const Effect& effect, const AssetConfig& asset) {
+  std::vector<double> parameters;
+  for (const PhysicsTerm& term : asset.physics)
+    if (term.id == effect.law->id && term.element == effect.element && parameters.empty())
+      for (const LawParameter& parameter : effect.law->parameters)
+        parameters.push_back(term.parameters.at(std::string(parameter.name)).value);
+  return parameters;
+}
+
 std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& best, const Data& data,
                                           const ExplainOptions& options, const CarryOver* carry_over) {
   const std::vector<double> errors = standard_errors(*best.model);

@@ -9,6 +9,8 @@ namespace sealwatch::mismatch {
 
 [[nodiscard]] LawAt law_at(const Effect& effect);
 [[nodiscard]] bool same_effects(const std::vector<Effect>& a, const std::vector<Effect>& b);
+/// The law's parameters in its order, as the asset has them; none where it does not hold the law.
+[[nodiscard]] std::vector<double> parameters_in(const Effect& effect, const AssetConfig& asset);
 
 /// Effects of the best model, most probable first. For each its alternatives are refitted in its place; with
 /// `carry_over` the nearest of them are told apart only where they predict other recordings worse. The law that was

@@ -17,7 +17,7 @@ namespace sealwatch::mismatch {
 namespace {
 
 constexpr std::size_t kAnywhere = 3;
-constexpr double kFormHere = 2e-2, kFormElsewhere = 2e-3;  // of the largest law's gain
+constexpr double kForm = 2e-2;  // of the largest law's gain
 
 double gain_of(const FoundEffect& effect) { return -effect.delta_bic; }
 
@@ -75,7 +75,7 @@ double share_left(const FittedModel& without, const FittedModel& with, double pr
 }
 
 bool leaves_its_form_at_most(const FittedModel& without, const FittedModel& with, double promised) {
-  return excess(with) <= kGross && with.misfit < without.misfit && share_left(without, with, promised) < kFormElsewhere;
+  return excess(with) <= kGross && with.misfit < without.misfit && share_left(without, with, promised) < kForm;
 }
 
 std::string left_beside(const LawAt& law, double share) { return may_be_the_form(law, share); }
@@ -103,16 +103,18 @@ bool same_place(const LawAt& a, const LawAt& b) { return a.id == b.id && a.eleme
 
 bool could_sit_anywhere(const FoundEffect& effect) { return effect.same_elements.size() >= kAnywhere; }
 
-std::optional<Remainder> remainder_among(std::span<const FoundEffect> effects, const LawAt& last) {
+std::optional<Remainder> remainder_among(std::span<const FoundEffect> effects, const LawAt& last,
+                                         const MoreThanForm& is_more_than_form) {
   for (const FoundEffect& effect : effects)
     if (same_place(effect.what, last) && could_sit_anywhere(effect))
       return Remainder{effect.what, sits_anywhere_in_words(effect)};
   const FoundEffect& largest = *std::ranges::max_element(effects, {}, gain_of);
   const FoundEffect* least = nullptr;
   for (const FoundEffect& effect : effects) {
-    const double form = effect.what.element == largest.what.element ? kFormHere : kFormElsewhere;
-    const bool little = gain_of(effect) < form * gain_of(largest);
-    if (little && (least == nullptr || gain_of(effect) < gain_of(*least))) least = &effect;
+    const bool little = gain_of(effect) < kForm * gain_of(largest);
+    if (little && (least == nullptr || gain_of(effect) < gain_of(*least)) &&
+        !is_more_than_form(effect.what, largest.what))
+      least = &effect;
   }
   if (least == nullptr) return std::nullopt;
   return Remainder{least->what, may_be_the_form(largest.what, gain_of(*least) / gain_of(largest)) +

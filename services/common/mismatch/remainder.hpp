@@ -1,13 +1,15 @@
 // A law beside another one that says only that something is left. Either it could as well sit in three other elements,
 // or what it takes is so little beside what the largest law takes that it may be no more than that law's exact form:
 //
-//   gain < 2e-2 of the largest law's at the same element,  < 2e-3 elsewhere
+//   gain < 2e-2 of the largest law's, at the same element or where some form of the largest law could do what it does
+//   (form_error.hpp)
 //
-// gain: criterion without the law less that with all. As amplitudes a seventh and a twentieth: no closer is the form of
-// a law known (a clamp or an arctangent where the catalogue has a hyperbolic tangent). Of two true effects so different
-// in size the smaller is lost by this; a note says what would take it.
+// gain: criterion without the law less that with all. As amplitudes a seventh: no closer is the form of a law known (a
+// clamp or an arctangent where the catalogue has a hyperbolic tangent). Of two true effects so different in size at one
+// element the smaller is lost by this; a note says what would take it.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -23,8 +25,12 @@ struct Remainder {
   std::string sentence;
 };
 
+/// Whether the first law is more than what the form of the second may be off by.
+using MoreThanForm = std::function<bool(const LawAt&, const LawAt&)>;
+
 /// Of the laws of one model, described; `last`: the one that was added last. Nothing where each says what it is.
-[[nodiscard]] std::optional<Remainder> remainder_among(std::span<const FoundEffect> effects, const LawAt& last);
+[[nodiscard]] std::optional<Remainder> remainder_among(std::span<const FoundEffect> effects, const LawAt& last,
+                                                       const MoreThanForm& is_more_than_form);
 
 /// What the first law found leaves, of what it took off the misfit `without` it: what exceeds the noise's share of the misfit
 /// `with` it, or, as that share is only known to about sqrt(2 N), what another law promises to take (`promised`).

@@ -1,0 +1,69 @@
+#include "services/common/mismatch/form_error.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "services/common/mismatch/candidates.hpp"
+#include "services/common/mismatch/criterion.hpp"
+#include "services/common/mismatch/linear_algebra.hpp"
+#include "services/common/mismatch/screening.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+constexpr double kMostly = 0.5;  // of what the small law does alone
+// A form may take up to a thousand times the noise, in the norm of all residuals: more is a direction that nothing shows.
+constexpr double kFormPrior = 1e-6;
+
+// g' (G + prior)^-1 g, columns of any size.
+double together(const Screening& screening, const std::vector<Eigen::Index>& columns) {
+  if (columns.empty()) return 0.0;
+  const Eigen::MatrixXd gram = submatrix(screening.gram, columns);
+  const Eigen::VectorXd scale = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd scaled = dense::scaled(gram, scale);
+  scaled.diagonal().array() += kFormPrior;
+  return quadratic(scaled, scale.cwiseProduct(subvector(screening.gradient, columns)));
+}
+
+}  // namespace
+
+std::vector<LawStart> more_than_form(const FittedModel& without, const Effect& large, std::vector<LawStart> small,
+                                     const Data& data, const ExplainOptions& options) {
+  std::erase_if(small, [&](const LawStart& law) { return law.effect.element == large.element; });
+  if (small.empty()) return {};
+  std::vector<Candidate> laws;
+  for (const bool closed_forms : {false, true})
+    for (Candidate& law : find_candidates(*without.problem.recordings.front().simulation, {}, closed_forms)) {
+      for (const LawStart& one : small) {
+        if (law.law != one.effect.law || law.element != one.effect.element) continue;
+        laws.push_back(law);
+        laws.back().grid = {one.parameters};
+      }
+      if (law.element == large.element) laws.push_back(std::move(law));
+    }
+  const auto screening =
+      screen_laws(without, std::move(laws), data, {.draws = 1, .seed = options.seed, .threads = options.threads});
+  if (!screening) return {};
+  const auto columns_of = [&](const auto& is_asked) {
+    std::vector<Eigen::Index> columns;
+    for (const Variant& variant : screening->variants)
+      if (is_asked(screening->candidates[variant.candidate]))
+        columns.insert(columns.end(), variant.columns.begin(), variant.columns.end());
+    return columns;
+  };
+  const auto forms = columns_of([&](const Candidate& law) { return law.element == large.element; });
+  const double by_forms = together(*screening, forms);
+  std::erase_if(small, [&](const LawStart& one) {
+    std::vector<Eigen::Index> columns = columns_of([&](const Candidate& law) {
+      return law.law == one.effect.law && law.element == one.effect.element && law.grid.front() == one.parameters;
+    });
+    const double alone = together(*screening, columns);
+    columns.insert(columns.end(), forms.begin(), forms.end());
+    const double beyond = together(*screening, columns) - by_forms;
+    return !(beyond > kWorthAnother * dispersion(without) && beyond > kMostly * alone);
+  });
+  return small;
+}
+
+}  // namespace sealwatch::mismatch

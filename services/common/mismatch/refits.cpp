@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 #include <ranges>
+#include <span>
 #include <utility>
 
 #include "sealwatch/model/law_sizes.hpp"
@@ -157,6 +158,126 @@ std::vector<Trial> trials_of(std::vector<Refit> refits) {
   return trials;
 }
 
+// Refits of one model with laws. In a gross misfit values that are known within a tolerance decide nothing yet: a first
+// round compares laws beside these as they are known, at half the cost or less; what goes on has their tolerances.
+class Refits {
+ public:
+  Refits(const Trial& from, const Data& data, int threads, const RefitOptions& options)
+      : from_(from), data_(data), threads_(threads), options_(options), gross_(excess(*from.model) > kGross) {
+    if (gross_) known_ = known_parameters(data, from.model->asset);
+    if (!known_.empty()) as_known_ = without_known(data, known_);
+  }
+
+  std::vector<Trial> run(const std::vector<std::vector<LawStart>>& laws) {
+    std::vector<Refit> refits = first_round(laws);
+    if (refits.empty()) return {};
+    const std::size_t count = std::min(refits.size(), kGoOn), ahead = known_.empty() ? count : std::min(count, kAhead);
+    best_ = refits.front().model;
+    go_on(std::span(refits).first(ahead));
+    go_on(std::span(refits).subspan(ahead, count - ahead));
+    std::erase_if(refits, lost_its_core);
+    return trials_of(std::move(refits));
+  }
+
+ private:
+  [[nodiscard]] const Data& first_data() const { return known_.empty() ? data_ : as_known_; }
+  [[nodiscard]] SearchBound bound_after(const FittedModel& best) const {
+    const GoesOn goes_on(best, options_.to_beat);
+    return known_.empty() ? goes_on.bound() : goes_on.bound_of_first();
+  }
+
+  // The best first.
+  std::vector<Refit> first_round(const std::vector<std::vector<LawStart>>& laws) {
+    std::vector<Refit> refits;
+    if (std::isfinite(options_.to_beat)) bound_ = bound_after(*from_.model);
+    for (std::size_t begin = 0, count = 0; begin < laws.size(); begin += count) {
+      count = std::min(begin == 0 ? kAhead : laws.size(), laws.size() - begin);
+      for (Refit& refit : in_parallel<Refit>(count, threads_, [&](std::size_t k) { return one(laws[begin + k]); }))
+        if (refit.model != nullptr) refits.push_back(std::move(refit));
+      if (refits.empty()) continue;
+      std::ranges::stable_sort(refits, {}, [](const Refit& refit) { return refit.model->misfit; });
+      bound_ = bound_after(*refits.front().model);
+    }
+    return refits;
+  }
+
+  // With a strength of nothing a law leaves what was there before: one that leaves more set out too far.
+  [[nodiscard]] Refit one(const std::vector<LawStart>& added) const {
+    Refit refit = start(added, 1.0);
+    const bool cut = refit.model != nullptr && refit.model->optimum.out_of_reach;
+    const bool worse = options_.again_smaller && !cut && options_.in_place_of.empty() && excess(*from_.model) < kFar &&
+                       (refit.model == nullptr || refit.model->misfit > from_.model->misfit);
+    if (!worse) return refit;
+    Refit again = start(added, kSmaller);
+    const bool better = again.model != nullptr && (refit.model == nullptr || again.model->misfit < refit.model->misfit);
+    return better ? again : refit;
+  }
+
+  [[nodiscard]] Refit start(const std::vector<LawStart>& added, double share) const {
+    Refit refit{.effects = from_.effects, .model = nullptr};
+    AssetConfig asset = from_.model->asset;
+    for (const KnownValue& value : known_) asset.parameters.at(value.name).value = value.value;
+    for (const std::size_t out : options_.in_place_of | std::views::reverse) {
+      asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(refit.effects.size() - out));
+      refit.effects.erase(refit.effects.begin() + static_cast<std::ptrdiff_t>(out));
+    }
+    for (const LawStart& law : added) {
+      refit.effects.push_back(law.effect);
+      std::vector<double> parameters = law.parameters;
+      for (const std::size_t k : strengths_of(*law.effect.law)) parameters[k] *= share;
+      asset = with_law(std::move(asset), *law.effect.law, law.effect.element, parameters);
+    }
+    const auto set_out = [&](const PemPoint& beside) {
+      return fit_model_beside(beside, asset, first_data(), *from_.model, kFirstRound, bound_);
+    };
+    // In a gross misfit the linear model of a free run says too little of what changes beside a law.
+    const bool tells_little = gross_ && data_.held_within_s == 0.0;
+    const PemPoint beside = tells_little ? PemPoint{} : beside_all(added, share);
+    Result<FittedModel> model =
+        options_.in_place_of.empty() ? set_out(beside) : sizes_first(asset, added, first_data(), *from_.model, bound_);
+    if (!model && !beside.own.empty()) model = set_out({});  // where the linear model leads, nothing can be simulated
+    if (model) refit.model = std::make_shared<FittedModel>(std::move(*model));
+    return refit;
+  }
+
+  // Each as long as it may come near the best so far.
+  void go_on(std::span<Refit> refits) {
+    const std::vector<Refit> gone_on =
+        in_parallel<Refit>(refits.size(), threads_, [&](std::size_t k) { return further(refits[k]); });
+    std::ranges::copy(gone_on, refits.begin());
+    for (const Refit& refit : gone_on)
+      if (refit.model->misfit < best_->misfit) best_ = refit.model;
+  }
+
+  [[nodiscard]] Refit further(Refit refit) const {
+    const GoesOn goes_on(*best_, options_.to_beat);
+    bool open = goes_on.at_first(*refit.model) || !is_exact_enough(*refit.model);
+    if (!known_.empty() && goes_on.is_hopeful(*refit.model)) {
+      Result<FittedModel> model = fit_model(refit.model->asset, data_, refit.model.get(), 1, kRound, goes_on.bound());
+      if (!model) return refit;
+      refit.model = std::make_shared<FittedModel>(std::move(*model));
+      open = goes_on.at_first(*refit.model);
+    }
+    for (int round = 0; round < kRounds && open; ++round) {
+      Result<FittedModel> model = continue_fit(*refit.model, data_, 1, kRound, goes_on.bound());
+      if (!model || (is_exact_enough(*refit.model) && model->misfit > refit.model->misfit)) break;
+      open = goes_on.after(*refit.model, *model);
+      refit.model = std::make_shared<FittedModel>(std::move(*model));
+    }
+    return refit;
+  }
+
+  const Trial& from_;
+  const Data& data_;
+  Data as_known_;  ///< without the values that are known, where it is gross
+  std::vector<KnownValue> known_;
+  int threads_;
+  const RefitOptions& options_;
+  bool gross_;
+  SearchBound bound_;                        ///< of the first round
+  std::shared_ptr<const FittedModel> best_;  ///< of those that went on
+};
+
 }  // namespace
 
 double could_reach(const FittedModel& model, double optimism) {
@@ -185,92 +306,7 @@ Trial polished(Trial trial, const Data& data, int threads) {
 
 std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawStart>>& laws, const Data& data,
                          int threads, const RefitOptions& options) {
-  // In a gross misfit the linear model of a free run says too little of what changes beside a law.
-  const bool tells_little = excess(*from.model) > kGross && data.held_within_s == 0.0;
-  const std::vector<KnownValue> known =
-      excess(*from.model) > kGross ? known_parameters(data, from.model->asset) : std::vector<KnownValue>{};
-  const Data as_known = known.empty() ? Data{} : without_known(data, known);
-  const Data& first = known.empty() ? data : as_known;
-  const auto bound_after = [&](const FittedModel& best) {
-    const GoesOn goes_on(best, options.to_beat);
-    return known.empty() ? goes_on.bound() : goes_on.bound_of_first();
-  };
-  SearchBound bound;
-  if (std::isfinite(options.to_beat)) bound = bound_after(*from.model);
-  const auto start = [&](const std::vector<LawStart>& added, double share) -> Refit {
-    Refit refit{.effects = from.effects, .model = nullptr};
-    AssetConfig asset = from.model->asset;
-    for (const KnownValue& value : known) asset.parameters.at(value.name).value = value.value;
-    for (const std::size_t out : options.in_place_of | std::views::reverse) {
-      asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(refit.effects.size() - out));
-      refit.effects.erase(refit.effects.begin() + static_cast<std::ptrdiff_t>(out));
-    }
-    for (const LawStart& law : added) {
-      refit.effects.push_back(law.effect);
-      std::vector<double> parameters = law.parameters;
-      for (const std::size_t k : strengths_of(*law.effect.law)) parameters[k] *= share;
-      asset = with_law(std::move(asset), *law.effect.law, law.effect.element, parameters);
-    }
-    const auto set_out = [&](const PemPoint& beside) {
-      return fit_model_beside(beside, asset, first, *from.model, kFirstRound, bound);
-    };
-    const PemPoint beside = tells_little ? PemPoint{} : beside_all(added, share);
-    Result<FittedModel> model =
-        options.in_place_of.empty() ? set_out(beside) : sizes_first(asset, added, first, *from.model, bound);
-    if (!model && !beside.own.empty()) model = set_out({});  // where the linear model leads, nothing can be simulated
-    if (model) refit.model = std::make_shared<FittedModel>(std::move(*model));
-    return refit;
-  };
-  // With a strength of nothing a law leaves what was there before: one that leaves more set out too far.
-  const auto one = [&](const std::vector<LawStart>& added) -> Refit {
-    Refit refit = start(added, 1.0);
-    const bool cut = refit.model != nullptr && refit.model->optimum.out_of_reach;
-    const bool worse = options.again_smaller && !cut && options.in_place_of.empty() && excess(*from.model) < kFar &&
-                       (refit.model == nullptr || refit.model->misfit > from.model->misfit);
-    if (!worse) return refit;
-    Refit again = start(added, kSmaller);
-    const bool better = again.model != nullptr && (refit.model == nullptr || again.model->misfit < refit.model->misfit);
-    return better ? again : refit;
-  };
-  std::vector<Refit> refits;
-  for (std::size_t begin = 0, count = 0; begin < laws.size(); begin += count) {
-    count = std::min(begin == 0 ? kAhead : laws.size(), laws.size() - begin);
-    for (Refit& refit : in_parallel<Refit>(count, threads, [&](std::size_t k) { return one(laws[begin + k]); }))
-      if (refit.model != nullptr) refits.push_back(std::move(refit));
-    if (refits.empty()) continue;
-    std::ranges::stable_sort(refits, {}, [](const Refit& refit) { return refit.model->misfit; });
-    bound = bound_after(*refits.front().model);
-  }
-  if (refits.empty()) return {};
-  // Those that go on do so with all that is known within a tolerance, the first two ahead of the others.
-  std::shared_ptr<const FittedModel> best = refits.front().model;
-  const auto further = [&](Refit refit) -> Refit {
-    const GoesOn goes_on(*best, options.to_beat);
-    bool open = goes_on.at_first(*refit.model) || !is_exact_enough(*refit.model);
-    if (!known.empty() && goes_on.is_hopeful(*refit.model)) {
-      Result<FittedModel> model = fit_model(refit.model->asset, data, refit.model.get(), 1, kRound, goes_on.bound());
-      if (!model) return refit;
-      refit.model = std::make_shared<FittedModel>(std::move(*model));
-      open = goes_on.at_first(*refit.model);
-    }
-    for (int round = 0; round < kRounds && open; ++round) {
-      Result<FittedModel> model = continue_fit(*refit.model, data, 1, kRound, goes_on.bound());
-      if (!model || (is_exact_enough(*refit.model) && model->misfit > refit.model->misfit)) break;
-      open = goes_on.after(*refit.model, *model);
-      refit.model = std::make_shared<FittedModel>(std::move(*model));
-    }
-    return refit;
-  };
-  const std::size_t go_on = std::min(refits.size(), kGoOn), ahead = known.empty() ? go_on : std::min(go_on, kAhead);
-  for (std::size_t begin = 0, end = ahead; begin < go_on; begin = std::exchange(end, go_on)) {
-    const auto gone_on =
-        in_parallel<Refit>(end - begin, threads, [&](std::size_t k) { return further(refits[begin + k]); });
-    std::ranges::copy(gone_on, refits.begin() + static_cast<std::ptrdiff_t>(begin));
-    for (const Refit& refit : gone_on)
-      if (refit.model->misfit < best->misfit) best = refit.model;
-  }
-  std::erase_if(refits, lost_its_core);
-  return trials_of(std::move(refits));
+  return Refits(from, data, threads, options).run(laws);
 }
 
 }  // namespace sealwatch::mismatch

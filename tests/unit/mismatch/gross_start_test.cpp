@@ -6,6 +6,7 @@
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/held_start.hpp"
 #include "services/common/mismatch/ranking.hpp"
+#include "services/common/mismatch/refits.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "tests/unit/mismatch/simulated_test.hpp"
 
@@ -46,6 +47,28 @@ TEST(GrossStart, HeldToItsStatesASimulationShowsTheLawThatItsFreeRunHides) {
   EXPECT_TRUE(slips(start.trial->effects[0]));
   EXPECT_EQ(start.trial->effects[1].law->id, "external_leakage");
   EXPECT_LT(excess(*start.trial->model), 1.2);
+}
+
+TEST(GrossStart, TheLawThatEndsItIsFittedBesideValuesWithinTheirTolerances) {
+  const AssetConfig asset = load_asset(SEALWATCH_SOURCE_DIR "/config/assets/xt03-mv2.yaml").value();
+  const Law &spring = **find_law("spring_load", {"k"}), &friction = **find_law("coulomb_friction", {"F_c", "v_s"});
+  const double area = asset.parameters.at("A_C").value;
+  AssetConfig truth = with_law(asset, spring, "piston", std::vector{3e5});
+  truth.parameters.at("A_C").value = 1.004 * area;
+  Data data;
+  data.names = {"one"};
+  data.samples = {simulated_test(truth, 1.0)};
+  data.known = {{.name = "A_C", .value = area, .standard_deviation = 0.005 * area}};
+  const auto baseline = std::make_shared<const FittedModel>(fit_model(asset, data, nullptr, 2).value());
+  ASSERT_GT(excess(*baseline), 10.0);
+  const std::vector<Trial> trials =
+      refit({{}, baseline}, {{{{&friction, "piston"}, {2000.0, 1e-4}}}, {{{&spring, "piston"}, {1e5}}}}, data, 2);
+  ASSERT_FALSE(trials.empty());
+  EXPECT_EQ(trials.front().effects.front().law->id, "spring_load");
+  EXPECT_LT(excess(*trials.front().model), 1.1);
+  const std::optional<double> found = estimate_of(*trials.front().model, "A_C");
+  ASSERT_TRUE(found) << "it was fitted as if the area were exact";
+  EXPECT_NEAR(*found / area, 1.004, 0.001);
 }
 
 }  // namespace

@@ -269,13 +269,10 @@ std::optional<Message> Journal::Database::fill_place(const Message& message, Utc
   return placed;
 }
 
-void Journal::Database::tell_of_damage(const std::string& aside) {
+void Journal::Database::tell_of_journal(const std::string& reason) {
   DamagedRow row;
   row.message_id = "journal/" + service;
-  tell(sql, row,
-       "the journal was damaged and is made again from the neighbours' messages, with what people said; the old one "
-       "is " +
-           aside + ": see that sealwatch audit shows the acts in force, and acknowledge and shelve alarms again");
+  tell(sql, row, reason);
 }
 
 /// Reads the stream again from there; what is known is passed over by its id.

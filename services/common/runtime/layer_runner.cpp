@@ -87,6 +87,8 @@ Status LayerRunner::start() {
   is_new_ = *is_new;
   waits_for_acts_ = is_new_ && keeps_acts() && !options_.strangers.services.empty();
   started_ns_ = clock_.now().nanoseconds;
+  clock_watch_.begin(journal_.last_used(), clock_.now(), steady_clock::now().time_since_epoch());
+  if (options_.watches_clock && clock_watch_.step_s()) tell_of_step();
   look_at_clock();
   if (Status status = publish_latest(); !status) return status;
   started_ = steady_clock::now();

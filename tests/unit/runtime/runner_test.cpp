@@ -940,6 +940,42 @@ TEST(ClockWatch, TellsAStepUntilItIsMendedOrAnHourOld) {
   EXPECT_FALSE(watch.step_s());
 }
 
+TEST(ClockWatch, AClockBehindWhatWasWrittenWasSetBackBeforeTheStart) {
+  using std::chrono::seconds;
+  const UtcTime begin{1'900'000'000'000'000'000};
+  ClockWatch watch;
+  watch.begin(add_seconds(begin, 7200.0), begin, seconds(0));
+  EXPECT_NEAR(watch.step_s().value(), -7200.0, 0.1);
+  EXPECT_FALSE(watch.look(add_seconds(begin, 1.0), seconds(1)));
+  EXPECT_TRUE(watch.look(add_seconds(begin, 9000.0), seconds(2))) << "how long the machine was off, nobody knows";
+  EXPECT_FALSE(watch.step_s());
+  ClockWatch late;
+  late.begin(begin, add_seconds(begin, 86400.0), seconds(0));
+  EXPECT_FALSE(late.step_s());
+}
+
+TEST_F(RunnerTest, TellsAtItsStartAClockThatIsBehindItsJournal) {
+  RunnerOptions options = fast_options();
+  options.watches_clock = true;
+  {
+    Process process(network_, cutting, place_.connection(), Fate(), options);
+    process.start();
+    ASSERT_TRUE(process.journal().begin());
+    ASSERT_TRUE(process.journal().add_input(SampleBlock{}, process.clock().now(), true));
+    ASSERT_TRUE(process.journal().commit());
+  }
+  Process process(network_, cutting, place_.connection(), Fate(), options);
+  process.clock().set(add_seconds(process.clock().now(), -7200.0));
+  process.start();
+  const auto alarms = [&] {
+    listener_.listen(milliseconds(5));
+    return listener_.statuses.empty() ? std::vector<ServiceAlarm>{} : listener_.statuses.back().alarms;
+  };
+  ASSERT_TRUE(step_until([&] { return !alarms().empty(); }, [&] { process.step(); }));
+  EXPECT_EQ(alarms().front().kind, "clock_step");
+  EXPECT_THAT(alarms().front().text, HasSubstr("set back by 7200 s"));
+}
+
 TEST_F(RunnerTest, TellsAClockThatWasSetAsAnAlarmUntilItIsSetBack) {
   RunnerOptions options = fast_options();
   options.watches_clock = true;

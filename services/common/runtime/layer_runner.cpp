@@ -480,6 +480,7 @@ Status LayerRunner::let_time_pass() {
     return woken ? at_rest(asset_id) : nullptr;
   };
   if (options_.local_inputs) options_.local_inputs->look(woken_at_rest, at_rest);
+  tell_of_local_inputs();
   if (!woken) return woken;
   const auto now = steady_clock::now();
   if (now - started_ < options_.settling || (full_since_ && now - *full_since_ < options_.longest_wait)) return {};

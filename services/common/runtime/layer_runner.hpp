@@ -217,6 +217,7 @@ class LayerRunner {
   void look_at_clock();
   void tell_of_step();
   void tell_of_synchronisation(ClockQuality quality);
+  void tell_of_local_inputs();
   void tell_of_floods();
   void tell_of_missing_blocks();
   /// Live tests that change no advice, as one that was played back is of the future.

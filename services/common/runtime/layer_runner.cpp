@@ -487,12 +487,19 @@ Status LayerRunner::let_time_pass() {
   for (const std::string& asset_id : lanes_.assets()) {
     Layer* const layer = at_rest(asset_id);
     if (layer == nullptr || time_stands_still(asset_id) || may_be_on_its_way(asset_id)) continue;
-    Conclusion conclusion = layer->tick(clock_.now());
+    Conclusion conclusion = layer->tick(believed_time());
     if (conclusion.outputs.empty() && conclusion.consumed.empty()) continue;
     const Survives survives = conclusion.refused.empty() ? Survives::kills : Survives::power_cuts;
     if (Status status = in_batch([&] { return keep(std::move(conclusion)); }, survives); !status) return status;
   }
   return {};
+}
+
+/// What is concluded from the time alone, a test that is overdue, stays: while the clock may be wrong, time goes on as it
+/// did before it was set.
+UtcTime LayerRunner::believed_time() const {
+  const double step_s = options_.read_clock ? clock_watch_.step_s().value_or(0.0) : 0.0;
+  return add_seconds(clock_.now(), -step_s);
 }
 
 /// A history that is played back is over. An asset that lives goes on beside it, and so does one that should: of which

@@ -165,6 +165,7 @@ class LayerRunner {
   [[nodiscard]] Status keep(Conclusion conclusion);
   [[nodiscard]] Status let_time_pass();
   [[nodiscard]] bool time_stands_still(const std::string& asset_id);
+  [[nodiscard]] UtcTime believed_time() const;
   [[nodiscard]] bool may_be_on_its_way(const std::string& asset_id);
   [[nodiscard]] Status serve_resends();
   [[nodiscard]] Status publish_latest();

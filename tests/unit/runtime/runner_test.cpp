@@ -349,6 +349,34 @@ class TimeTest : public RunnerTest {
 
 TEST_F(TimeTest, PassesOnceASecondInLiveOperation) { EXPECT_EQ(ticks_after({features("p1", 1)}), 2U); }
 
+/// A test would be overdue that nobody can make undone when the clock is right again.
+TEST_F(TimeTest, GoesOnAsItDidWhileTheClockMayBeWrong) {
+  std::vector<UtcTime> ticks;
+  const auto layer = [&ticks] {
+    auto made = std::make_unique<JoiningLayer>();
+    made->ticks = &ticks;
+    return made;
+  };
+  RunnerOptions options = fast_options();
+  options.assets = {"A"};
+  options.read_clock = [] { return ClockReading{}; };
+  Process process(network_, layer, place_.connection(), Fate(), options);
+  process.start();
+  const UtcTime begin = process.clock().now();
+  const auto steady_begin = std::chrono::steady_clock::now();
+  for (const double set_by_s : {0.0, 3.0e6, 0.0, -7200.0}) {
+    const std::size_t before = ticks.size();
+    ASSERT_TRUE(step_until([&] { return ticks.size() > before + 1; },
+                           [&] {
+                             const std::chrono::duration<double> elapsed =
+                                 std::chrono::steady_clock::now() - steady_begin;
+                             process.clock().set(add_seconds(begin, elapsed.count() + set_by_s));
+                             process.step();
+                           }));
+  }
+  for (const UtcTime& tick : ticks) EXPECT_LT(std::abs(seconds_between(begin, tick)), 60.0);
+}
+
 TEST_F(TimeTest, StandsStillInAReplay) { EXPECT_EQ(ticks_after({features("p1", 1, true)}), 0U); }
 
 TEST_F(TimeTest, PassesInAReplayOfAnAssetWhoseTestsAreDue) {

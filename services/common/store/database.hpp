@@ -126,6 +126,7 @@ struct Journal::Database {
   void mend_outputs(bool all);
   void know_damaged_tests();
   void make_indexes_anew();
+  void check_small_tables();
   // journal_check.cpp
   /// Looks whether the indexes find the next rows; false once all were looked at. Throws Error where one does not.
   bool check_indexes();

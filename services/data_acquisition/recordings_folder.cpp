@@ -1,5 +1,7 @@
 #include "services/data_acquisition/recordings_folder.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <chrono>
 #include <exception>
@@ -24,6 +26,12 @@ constexpr std::size_t kLongestName = 255;
 std::int64_t now_ns() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+}
+
+/// In its file system; zero of none.
+std::uintmax_t number_of(const fs::path& file) {
+  struct stat found {};
+  return ::stat(file.c_str(), &found) == 0 ? found.st_ino : 0;
 }
 
 fs::path reason_beside(const fs::path& recording) {
@@ -152,7 +160,10 @@ std::optional<RecordingsFolder::Stamp> RecordingsFolder::stamp_of(const fs::path
     link.leads_nowhere = fs::is_symlink(fs::symlink_status(path, error));
     return link.leads_nowhere ? std::optional(link) : std::nullopt;
   }
-  stamp.sidecar_changed = fs::last_write_time(fs::path(path).replace_extension(".yaml"), error);
+  const fs::path sidecar = fs::path(path).replace_extension(".yaml");
+  stamp.sidecar_changed = fs::last_write_time(sidecar, error);
+  stamp.number = number_of(path);
+  stamp.sidecar_number = number_of(sidecar);
   return stamp;
 }
 

@@ -45,9 +45,11 @@ class RecordingsFolder {
   [[nodiscard]] std::vector<ServiceAlarm> alarms() const;
 
  private:
-  /// What changes when a recording or its sidecar does.
+  /// What changes when a recording or its sidecar does; its number, where another of the same size and time takes its
+  /// name.
   struct Stamp {
     std::uintmax_t size = 0;
+    std::uintmax_t number = 0, sidecar_number = 0;
     std::filesystem::file_time_type changed, sidecar_changed;
     bool leads_nowhere = false;  ///< a link, which is refused in its turn
     bool operator==(const Stamp&) const = default;

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <functional>
 #include <set>
+#include <sstream>
 #include <thread>
 
 #include "services/common/recording/recording_file.hpp"
@@ -114,6 +115,27 @@ TEST_F(RecordingsFolderTest, OneThatIsOverwrittenWhenItsTestIsConcludedIsReadToo
   EXPECT_TRUE(watched.look().empty());
   EXPECT_THAT(files(), testing::ElementsAre("done/april.csv", "done/april.yaml"));
   EXPECT_THAT(errors_, testing::IsEmpty());
+}
+
+/// As an archive unpacks them, of one size and time.
+TEST_F(RecordingsFolderTest, OneWhoseNameAnotherOfItsSizeAndTimeTakesIsReadToo) {
+  DataAcquisition layer(assets_);
+  Watched watched = folder(layer);
+  drop("april", "XT03-MV2");
+  (void)watched.look();
+  for (const Message& block : watched.look()) (void)layer.receive(block);
+  const fs::path file = directory_ / "april.csv", other = directory_ / "april.new";
+  std::stringstream text;
+  text << std::ifstream(file).rdbuf();
+  std::string another = text.str();
+  std::string::value_type& digit = another.at(another.find_last_of("0123456789"));
+  digit = digit == '1' ? '2' : '1';
+  std::ofstream(other) << another;
+  fs::last_write_time(other, fs::last_write_time(file));
+  fs::rename(other, file);
+  EXPECT_TRUE(watched.look().empty());
+  EXPECT_TRUE(fs::exists(file)) << "it is not the one that was read";
+  EXPECT_FALSE(watched.look().empty());
 }
 
 TEST_F(RecordingsFolderTest, LeavesACopyInProgressAlone) {

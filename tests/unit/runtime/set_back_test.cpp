@@ -9,7 +9,12 @@ namespace {
 
 class SetBackTest : public ::testing::Test {
  protected:
-  SetBackTest() { process_.start(); }
+  explicit SetBackTest(const std::vector<std::string>& services = {}) : services_(services) { process_.start(); }
+  [[nodiscard]] RunnerOptions options() const {
+    RunnerOptions options = fast_options();
+    options.strangers.services = services_;
+    return options;
+  }
   /// Publishes test `pst` as number `sequence`.
   void send(std::uint64_t sequence, const std::string& pst) {
     TestFeatures features;
@@ -38,10 +43,11 @@ class SetBackTest : public ::testing::Test {
     return tests;
   }
 
+  std::vector<std::string> services_;
   Place place_;
   std::shared_ptr<InMemoryNetwork> network_ = std::make_shared<InMemoryNetwork>();
   InMemoryBus writer_{network_};
-  Process process_{network_, [] { return std::make_unique<JoiningLayer>(); }, place_.connection()};
+  Process process_{network_, [] { return std::make_unique<JoiningLayer>(); }, place_.connection(), Fate(), options()};
 };
 
 TEST_F(SetBackTest, ANumberThatComesWithAnotherMessageHasTheStreamReadAgain) {
@@ -86,9 +92,11 @@ TEST_F(SetBackTest, WhatComesAgainAsItWasChangesNothing) {
 /// What a neighbour says it has read of the own stream, in the own journal or in one before it.
 class OwnJournal : public SetBackTest {
  protected:
+  OwnJournal() : SetBackTest({"health_assessment", "data_manipulation"}) {}
   void hear_of_own(const std::string& writer, std::uint64_t read) {
     ServiceStatus status;
-    status.service = status.writer_id = "upstream";
+    status.service = "data_manipulation";
+    status.writer_id = "downstream";
     status.received = {{"health_report", writer, read}};
     EXPECT_TRUE(writer_.publish(status));
     // An alarm is in the journal within a second or two.
@@ -107,7 +115,7 @@ class OwnJournal : public SetBackTest {
 
 TEST_F(OwnJournal, OfWhichANeighbourReadMoreThanItHasIsAnAlarm) {
   hear_of_own(process_.journal().writer_id(), 7);
-  EXPECT_THAT(told(), ::testing::ElementsAre(::testing::HasSubstr("older than what upstream has read of it")));
+  EXPECT_THAT(told(), ::testing::ElementsAre(::testing::HasSubstr("older than what data_manipulation has read of it")));
 }
 
 TEST_F(OwnJournal, BeforeWhichThereWasAnotherIsAnAlarm) {

@@ -30,6 +30,7 @@ constexpr std::array kTable = {
     Row{"clock_unsynchronised", Ne107::maintenance_required, "clock is not synchronised"},
     Row{"future_test", Ne107::failure, "live tests change no advice"},
     Row{"refused_test", Ne107::failure, "a test was refused"},
+    Row{"recording_not_taken", Ne107::failure, "a recording was not taken"},
     Row{"sensor_lost", Ne107::failure, "sensor lost"},
     Row{"awaits_confirmation", Ne107::maintenance_required, "an act waits for a second person"},
     Row{"unknown_writer", Ne107::out_of_specification, "messages from an unknown writer"},

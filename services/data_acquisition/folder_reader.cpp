@@ -102,6 +102,11 @@ std::vector<Message> FolderReader::take() {
   return piece;
 }
 
+std::vector<ServiceAlarm> FolderReader::alarms() {
+  const std::lock_guard lock(mutex_);
+  return alarms_;
+}
+
 bool FolderReader::stop(std::chrono::milliseconds patience) {
   std::unique_lock lock(mutex_);
   thread_.request_stop();
@@ -130,6 +135,7 @@ void FolderReader::look_at_folder() {
   folder_.look();
   const std::lock_guard lock(mutex_);
   awaiting_ = folder_.awaiting();
+  alarms_ = folder_.alarms();
   all_taken_ = folder_.all_taken();
 }
 

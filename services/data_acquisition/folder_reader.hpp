@@ -37,6 +37,7 @@ class FolderReader final : public LocalInputs {
   void on_some(std::function<void()> call) override { on_some_ = std::move(call); }
   [[nodiscard]] bool has_some() override { return has_some_; }
   [[nodiscard]] std::vector<Message> take() override;
+  [[nodiscard]] std::vector<ServiceAlarm> alarms() override;
   [[nodiscard]] bool stop(std::chrono::milliseconds patience) override;
 
  private:
@@ -63,10 +64,11 @@ class FolderReader final : public LocalInputs {
   std::condition_variable_any changed_;
   std::deque<RawSamples> blocks_;     ///< of the recording that is being taken
   std::vector<RawSamples> awaiting_;  ///< first blocks of those that were taken and are still in the folder
-  bool all_taken_ = false;            ///< nothing in the folder is still to be read
-  std::set<Test> concluded_;          ///< those among them that are concluded
-  bool ended_ = true;                 ///< the thread
-  std::jthread thread_;               ///< last: it ends first
+  std::vector<ServiceAlarm> alarms_;
+  bool all_taken_ = false;    ///< nothing in the folder is still to be read
+  std::set<Test> concluded_;  ///< those among them that are concluded
+  bool ended_ = true;         ///< the thread
+  std::jthread thread_;       ///< last: it ends first
 };
 
 }  // namespace sealwatch

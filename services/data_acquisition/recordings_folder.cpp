@@ -1,6 +1,9 @@
 #include "services/data_acquisition/recordings_folder.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <new>
 #include <utility>
@@ -16,6 +19,25 @@ namespace sealwatch {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Of a file system's longest name.
+constexpr std::size_t kLongestName = 255;
+
+std::int64_t now_ns() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+}
+
+/// In its file system; zero of none.
+std::uintmax_t number_of(const fs::path& file) {
+  struct stat found {};
+  return ::stat(file.c_str(), &found) == 0 ? found.st_ino : 0;
+}
+
+fs::path reason_beside(const fs::path& recording) {
+  const std::string name = recording.filename().string();
+  return recording.parent_path() / (name.substr(0, kLongestName - std::string(kReasonSuffix).size()) + kReasonSuffix);
+}
 
 }  // namespace
 
@@ -38,6 +60,7 @@ RecordingsFolder::RecordingsFolder(fs::path directory, std::vector<AssetConfig> 
 
 void RecordingsFolder::look() {
   put_away_concluded();
+  rejected_.look(directory_);
   const std::vector<fs::path> there = recordings();
   std::erase_if(files_, [&](const auto& file) { return !std::ranges::binary_search(there, file.first); });
   to_read_.clear();
@@ -70,6 +93,25 @@ std::vector<RawSamples> RecordingsFolder::awaiting() const {
   return first_blocks;
 }
 
+std::vector<ServiceAlarm> RecordingsFolder::alarms() const {
+  std::vector<ServiceAlarm> alarms = rejected_.alarms();
+  if (!is_readable_) alarms.push_back(recording_alarm("recordings_directory", unreadable_, unreadable_ns_));
+  std::size_t stuck = 0;
+  const File* first = nullptr;
+  for (const auto& [path, file] : files_) {
+    if (!file.stuck) continue;
+    ++stuck;
+    if (first == nullptr || file.stuck_ns < first->stuck_ns) first = &file;
+  }
+  if (first != nullptr)
+    alarms.push_back(recording_alarm("stuck",
+                                     std::to_string(stuck) + " recordings in " + visible(directory_.string()) +
+                                         " cannot be moved away, and are not looked at again; see the log: let the "
+                                         "service write there, and restart it",
+                                     first->stuck_ns));
+  return alarms;
+}
+
 /// CSV, MAT and HDF5 files right in the folder, by name.
 std::vector<fs::path> RecordingsFolder::recordings() {
   std::vector<fs::path> paths;
@@ -81,12 +123,17 @@ std::vector<fs::path> RecordingsFolder::recordings() {
     if (is_one && !entry->is_directory(ignored)) paths.push_back(entry->path());
   }
   const bool was_readable = std::exchange(is_readable_, !error);
-  if (error && was_readable)
-    report_(Error{.file = directory_.string(),
-                  .place = "recordings_directory",
-                  .value = {},
-                  .rule = "cannot be read: " + error.message(),
-                  .advice = "make it again, or let the service read it; nothing dropped there is taken meanwhile"});
+  if (error && was_readable) {
+    const Error unreadable{
+        .file = directory_.string(),
+        .place = "recordings_directory",
+        .value = {},
+        .rule = "cannot be read: " + error.message(),
+        .advice = "make it again, or let the service read it; nothing dropped there is taken meanwhile"};
+    unreadable_ = unreadable.describe();
+    unreadable_ns_ = now_ns();
+    report_(unreadable);
+  }
   std::sort(paths.begin(), paths.end());
   return paths;
 }
@@ -98,7 +145,7 @@ void RecordingsFolder::put_away_concluded() {
     const bool concluded = file->second.taken && !file->second.stuck && is_concluded_(file->second.first_block) &&
                            stamp_of(file->first) == file->second.stamp;
     const bool gone = concluded && move_to("done", file->first);
-    file->second.stuck = file->second.stuck || (concluded && !gone);
+    if (concluded && !gone) set_stuck(file->second);
     file = gone ? files_.erase(file) : std::next(file);
   }
 }
@@ -113,7 +160,10 @@ std::optional<RecordingsFolder::Stamp> RecordingsFolder::stamp_of(const fs::path
     link.leads_nowhere = fs::is_symlink(fs::symlink_status(path, error));
     return link.leads_nowhere ? std::optional(link) : std::nullopt;
   }
-  stamp.sidecar_changed = fs::last_write_time(fs::path(path).replace_extension(".yaml"), error);
+  const fs::path sidecar = fs::path(path).replace_extension(".yaml");
+  stamp.sidecar_changed = fs::last_write_time(sidecar, error);
+  stamp.number = number_of(path);
+  stamp.sidecar_number = number_of(sidecar);
   return stamp;
 }
 
@@ -183,16 +233,21 @@ std::optional<fs::path> RecordingsFolder::move_to(const std::string& folder, con
   return std::nullopt;
 }
 
+void RecordingsFolder::set_stuck(File& file) {
+  file.stuck = true;
+  file.stuck_ns = now_ns();
+}
+
 void RecordingsFolder::reject(const fs::path& path, const Error& error) {
   report_(error);
   const std::optional<fs::path> place = move_to("rejected", path);
   if (!place) {
     files_[path].taken = true;
-    files_[path].stuck = true;
+    set_stuck(files_[path]);
     return;
   }
   files_.erase(path);
-  write_new(place->string() + ".error.txt", visible(error.describe()) + "\n");
+  write_new(reason_beside(*place), visible(error.describe()) + "\n");
 }
 
 }  // namespace sealwatch

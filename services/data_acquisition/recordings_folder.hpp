@@ -20,6 +20,7 @@
 #include "sealwatch/core/recording.hpp"
 #include "sealwatch/core/result.hpp"
 #include "sealwatch/message/topics.hpp"
+#include "services/data_acquisition/folder_alarms.hpp"
 
 namespace sealwatch {
 
@@ -40,11 +41,15 @@ class RecordingsFolder {
   [[nodiscard]] bool all_taken() const;
   /// The first blocks of the recordings that were read and are still there.
   [[nodiscard]] std::vector<RawSamples> awaiting() const;
+  /// What is not taken: a rejected recording, one that cannot be moved away, all while the folder cannot be read.
+  [[nodiscard]] std::vector<ServiceAlarm> alarms() const;
 
  private:
-  /// What changes when a recording or its sidecar does.
+  /// What changes when a recording or its sidecar does; its number, where another of the same size and time takes its
+  /// name.
   struct Stamp {
     std::uintmax_t size = 0;
+    std::uintmax_t number = 0, sidecar_number = 0;
     std::filesystem::file_time_type changed, sidecar_changed;
     bool leads_nowhere = false;  ///< a link, which is refused in its turn
     bool operator==(const Stamp&) const = default;
@@ -53,7 +58,8 @@ class RecordingsFolder {
     std::optional<Stamp> stamp;
     int unchanged_looks = 0;
     bool taken = false;
-    bool stuck = false;      ///< could not be moved away: reported once, then left alone
+    bool stuck = false;  ///< could not be moved away: reported once, then left alone
+    std::int64_t stuck_ns = 0;
     RawSamples first_block;  ///< without samples it would not be known again: content_hash is always set
   };
   [[nodiscard]] std::vector<std::filesystem::path> recordings();
@@ -65,6 +71,7 @@ class RecordingsFolder {
   [[nodiscard]] Result<Recording> read(const std::filesystem::path& path) const;
   /// Where the recording is now; nothing where it could not be moved, which is reported.
   std::optional<std::filesystem::path> move_to(const std::string& folder, const std::filesystem::path& path);
+  static void set_stuck(File& file);
   void reject(const std::filesystem::path& path, const Error& error);
 
   std::filesystem::path directory_;
@@ -74,7 +81,10 @@ class RecordingsFolder {
   int looks_until_settled_;
   std::map<std::filesystem::path, File> files_;
   std::deque<std::filesystem::path> to_read_;
-  bool is_readable_ = true;  ///< at the last look
+  bool is_readable_ = true;         ///< at the last look
+  std::int64_t unreadable_ns_ = 0;  ///< since when not
+  std::string unreadable_;          ///< why not
+  RejectedRecordings rejected_;
 };
 
 }  // namespace sealwatch

@@ -3,8 +3,8 @@
 bits turned in every table of their journals, a full disk, a disk that cannot be written, clocks that are set, a bad
 network between two hosts; and the floods, the poison and the years under which they must stay as they are. One line for each trial, with
 its seed: the same seed makes the same choices, though not the same moments.
-Usage: campaign.py BIN_DIRECTORY [kills|bits|full_disk|read_only|clock_steps|two_hosts|flood|poison|years|all] [--seed N]
-           [--kills N] [--bits N] [--tests N] [--steps N] [--seconds N] [--assets N] [--live N] [--floods NAMES]
+Usage: campaign.py BIN_DIRECTORY [kills|bits|damages|full_disk|read_only|clock_steps|two_hosts|flood|poison|years|all] [--seed N]
+           [--kills N] [--bits N] [--damages N] [--tests N] [--steps N] [--seconds N] [--assets N] [--live N] [--floods NAMES]
 """
 import argparse
 import ctypes
@@ -35,7 +35,7 @@ SERVICES = ["data-acquisition", "data-manipulation", "state-detection", "health-
             "advisory-generation"]
 DOMAIN = 96
 PATIENCE_S = float(os.environ.get("CAMPAIGN_PATIENCE_S", 240.0))  # longer where the machine has much else to do
-TRIALS = ["kills", "bits", "full_disk", "read_only", "clock_steps", "two_hosts", "flood", "poison", "years"]
+TRIALS = ["kills", "bits", "damages", "full_disk", "read_only", "clock_steps", "two_hosts", "flood", "poison", "years"]
 LIVE_DOMAIN = 97  # of tests/perf/services/live_latency.cpp
 MOST_STATUS_KB = 200.0      # what `status --json` says of six services, whatever strangers sent
 MOST_GROWTH_MB = 100.0      # of a service under a flood: its queues and inboxes, all of them bounded
@@ -48,6 +48,50 @@ TABLES = {"inputs": ["message_id", "payload", "consumed", "pst_id"], "outputs": 
 
 class Failed(Exception):
     pass
+
+
+def used_pages(file):
+    """Of a closed journal: those that SQLite reads, and their size."""
+    with sqlite3.connect(file) as journal:
+        pages = [row[0] for row in journal.execute("SELECT pageno FROM dbstat ORDER BY pageno")]
+        return pages, journal.execute("PRAGMA page_size").fetchone()[0]
+
+
+def zero_page(campaign, file):
+    pages, size = used_pages(file)
+    with open(file, "r+b") as content:
+        content.seek((campaign.random.choice(pages) - 1) * size)
+        content.write(bytes(size))
+
+
+def garbage_in(file, share):
+    size = file.stat().st_size if file.exists() else 5000
+    with open(file, "r+b" if file.exists() else "wb") as content:
+        content.seek(int(size * share))
+        content.write(os.urandom(size - int(size * share)))
+
+
+def log_of(file):
+    return file.with_name(file.name + "-wal")
+
+
+def from_another(campaign, file):
+    shutil.copy(file.parent / database(campaign.random.choice([s for s in SERVICES if database(s) != file.name])), file)
+
+
+def copy_over(source, file):
+    shutil.copy(source / file.name, file)
+
+
+# What is done to a journal that its service has closed, or left when it was killed.
+CLOSED = {"zeroed page": zero_page, "cut": lambda c, file: os.truncate(file, int(file.stat().st_size * c.random.uniform(0.2, 0.9))),
+          "removed": lambda c, file: file.unlink(), "emptied": lambda c, file: os.truncate(file, 0),
+          "another service's": from_another, "another site's": lambda c, file: copy_over(c.other_site, file),
+          "older backup": lambda c, file: copy_over(c.older, file)}
+KILLED = {"log removed": lambda c, file: log_of(file).unlink(), "log's end spoilt": lambda c, file: garbage_in(log_of(file), 0.6)}
+# What SQLite never reads.
+HARMLESS = {"garbage behind the last page": lambda c, file: file.write_bytes(file.read_bytes() + os.urandom(5000)),
+            "garbage as a log": lambda c, file: garbage_in(log_of(file), 0.0)}
 
 
 def database(service):
@@ -318,6 +362,70 @@ class Campaign:
             raise Failed(f"{len(silent)} of {self.arguments.bits} bits changed results and nobody said so: {silent[0]}")
         return (f"{self.arguments.bits} bits, each in a copy of six journals: every service starts; results identical "
                 f"{identical} times, else told as an alarm ({told})")
+
+    def make_bases(self):
+        """States to be damaged: of services that were stopped, or killed; an older backup, and another site's journals."""
+        half = self.files[:len(self.files) // 2]
+        for name, played in (("other_site", self.files[-1:]), ("closed", self.files), ("killed", self.files)):
+            with World(self.binaries, self.folder) as world:
+                world.start_all()
+                world.wait_until_running()
+                if name == "closed":
+                    self.older = self.folder / "older"
+                    replayed(world, half)
+                    world.run("backup", "--state", world.state, "--to", self.older)
+                replayed(world, played)
+                time.sleep(1.5)  # what was heard is known
+                if name == "killed":
+                    for process in world.processes.values():
+                        process.kill()
+                        process.wait()
+                world.stop()
+                setattr(self, name, world.state)
+
+    def damaged(self, base, service, damage):
+        """What differs, and what is told, once a journal of that state was damaged and its service started."""
+        state = self.folder / f"damaged-{World.count}"
+        shutil.copytree(base, state)
+        damage(self, state / database(service))
+        with World(self.binaries, self.folder, state) as world:
+            world.start_all()
+            end = time.monotonic() + 4.0
+            while time.monotonic() < end:  # as systemd does
+                world.keep_up()
+                time.sleep(0.3)
+            difference = settle(world, self.undisturbed, 8.0)
+            world.run("status", "--seconds", "1.5")
+            if ended := world.keep_up():
+                raise Failed(f"does not stay up: {ended}")
+            told = [alarm["text"] for alarm in json.loads(world.run("status", "--json", "--seconds", "1.5").stdout)["alarms"]
+                    if alarm["kind"] in ("set_aside", "no_heartbeat")]
+        shutil.rmtree(state)
+        return difference, told
+
+    def damages(self):
+        """Whole files and pages, not bits: noticed, told, and made again; what SQLite never reads changes nothing."""
+        self.make_bases()
+        cases = [(self.closed, service, name, damage, name in HARMLESS) for service in SERVICES
+                 for name, damage in (CLOSED | HARMLESS).items()]
+        # Of the last service's conclusions no neighbour knows how far they went.
+        cases += [(self.killed, service, name, damage, False) for service in SERVICES for name, damage in KILLED.items()
+                  if service != SERVICES[-1] or name == "log removed"]
+        if self.arguments.damages:
+            cases = self.random.sample(cases, self.arguments.damages)
+        for base, service, name, damage, is_harmless in cases:
+            try:
+                difference, told = self.damaged(base, service, damage)
+            except Failed as failure:
+                raise Failed(f"{service}, {name}: {failure}") from None
+            lost = service == SERVICES[0] and re.fullmatch(r"data-acquisition: \d+ missing, 0 more, 0 different \(.*\)", difference)
+            if is_harmless and (difference or told):
+                raise Failed(f"{service}, {name}: {difference or told}")
+            if not is_harmless and (not told or (difference and not lost)):
+                raise Failed(f"{service}, {name}: {difference or 'identical'}, told: {told}")
+            if lost and not any("samples" in one or "damaged" in one or "in the place" in one for one in told):
+                raise Failed(f"{service}, {name}: samples are lost, told: {told}")
+        return f"{len(cases)} damages: every service starts, each told as an alarm; results identical, or samples named as lost"
 
     def full_disk(self):
         with World(self.binaries, self.folder) as world:
@@ -686,6 +794,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--kills", type=int, default=8)
     parser.add_argument("--bits", type=int, default=6)
+    parser.add_argument("--damages", type=int, default=0, help="so many, drawn; 0: each to each journal")
     parser.add_argument("--tests", type=int, default=8)
     parser.add_argument("--steps", type=int, default=10)
     parser.add_argument("--seconds", type=int, default=20)

@@ -9,10 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "sealwatch/message/service.hpp"
 #include "sealwatch/message/topics.hpp"
 #include "sealwatch/port/layer.hpp"
 
 namespace sealwatch {
+
+/// Kind of the alarms about what was not taken.
+inline constexpr const char* kRecordingNotTaken = "recording_not_taken";
 
 class LocalInputs {
  public:
@@ -30,6 +34,8 @@ class LocalInputs {
   /// A small piece of what is ready, in order: other messages get their turn after it. A message that comes twice is
   /// taken once, by its id.
   [[nodiscard]] virtual std::vector<Message> take() = 0;
+  /// What was not taken, for as long as nobody has seen to it.
+  [[nodiscard]] virtual std::vector<ServiceAlarm> alarms() { return {}; }
   /// Ends the work. False when some of it goes on after `patience`: then only the end of the process stops it.
   [[nodiscard]] virtual bool stop(std::chrono::milliseconds patience) = 0;
 };

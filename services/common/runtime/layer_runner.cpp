@@ -87,6 +87,8 @@ Status LayerRunner::start() {
   is_new_ = *is_new;
   waits_for_acts_ = is_new_ && keeps_acts() && !options_.strangers.services.empty();
   started_ns_ = clock_.now().nanoseconds;
+  clock_watch_.begin(journal_.last_used(), clock_.now(), steady_clock::now().time_since_epoch());
+  if (options_.watches_clock && clock_watch_.step_s()) tell_of_step();
   look_at_clock();
   if (Status status = publish_latest(); !status) return status;
   started_ = steady_clock::now();
@@ -478,18 +480,26 @@ Status LayerRunner::let_time_pass() {
     return woken ? at_rest(asset_id) : nullptr;
   };
   if (options_.local_inputs) options_.local_inputs->look(woken_at_rest, at_rest);
+  tell_of_local_inputs();
   if (!woken) return woken;
   const auto now = steady_clock::now();
   if (now - started_ < options_.settling || (full_since_ && now - *full_since_ < options_.longest_wait)) return {};
   for (const std::string& asset_id : lanes_.assets()) {
     Layer* const layer = at_rest(asset_id);
     if (layer == nullptr || time_stands_still(asset_id) || may_be_on_its_way(asset_id)) continue;
-    Conclusion conclusion = layer->tick(clock_.now());
+    Conclusion conclusion = layer->tick(believed_time());
     if (conclusion.outputs.empty() && conclusion.consumed.empty()) continue;
     const Survives survives = conclusion.refused.empty() ? Survives::kills : Survives::power_cuts;
     if (Status status = in_batch([&] { return keep(std::move(conclusion)); }, survives); !status) return status;
   }
   return {};
+}
+
+/// What is concluded from the time alone, a test that is overdue, stays: while the clock may be wrong, time goes on as it
+/// did before it was set.
+UtcTime LayerRunner::believed_time() const {
+  const double step_s = options_.read_clock ? clock_watch_.step_s().value_or(0.0) : 0.0;
+  return add_seconds(clock_.now(), -step_s);
 }
 
 /// A history that is played back is over. An asset that lives goes on beside it, and so does one that should: of which

@@ -165,6 +165,7 @@ class LayerRunner {
   [[nodiscard]] Status keep(Conclusion conclusion);
   [[nodiscard]] Status let_time_pass();
   [[nodiscard]] bool time_stands_still(const std::string& asset_id);
+  [[nodiscard]] UtcTime believed_time() const;
   [[nodiscard]] bool may_be_on_its_way(const std::string& asset_id);
   [[nodiscard]] Status serve_resends();
   [[nodiscard]] Status publish_latest();
@@ -217,6 +218,7 @@ class LayerRunner {
   void look_at_clock();
   void tell_of_step();
   void tell_of_synchronisation(ClockQuality quality);
+  void tell_of_local_inputs();
   void tell_of_floods();
   void tell_of_missing_blocks();
   /// Live tests that change no advice, as one that was played back is of the future.
@@ -299,6 +301,8 @@ class LayerRunner {
   void note_older_acts(const ServiceStatus& status);
   [[nodiscard]] std::optional<std::string> lost_for_ever() const;
   void hear_of_own_outputs(const ServiceStatus& status);
+  [[nodiscard]] std::optional<std::string> samples_lost_with(const std::string& other) const;
+  [[nodiscard]] Status tell_of_journal(const std::string& reason, const std::optional<std::string>& lost);
   [[nodiscard]] bool reads_samples() const;
   /// Keeps it, and looks how far the own record goes.
   [[nodiscard]] Status note_acts();
@@ -373,8 +377,10 @@ class LayerRunner {
   std::set<std::string> compared_;                 ///< whose records the journal was compared with before
   std::string has_older_acts_;                     ///< of them, one whose record began before the own journal
   std::string has_unrecorded_acts_;                ///< likewise, and of an earlier version that keeps no act_record
-  std::string has_read_more_;                      ///< one that read samples of a journal before the own one
-  std::vector<LaneResult> results_;                ///< not yet in the journal
+  std::string has_read_more_;                      ///< one that read messages of a journal before the own one
+  std::optional<std::string> set_back_before_;     ///< one that read more than the own journal has written
+  bool tells_of_set_back_ = false;
+  std::vector<LaneResult> results_;  ///< not yet in the journal
   Outbox outbox_;
   std::map<Key, std::uint64_t> committed_;    ///< positions in the journal
   std::map<Key, std::uint64_t> uncommitted_;  ///< positions of the running batch

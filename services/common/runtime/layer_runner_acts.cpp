@@ -33,14 +33,12 @@ std::string plain(const std::string& who) {
   return name;
 }
 
-/// That something of a new journal cannot be had back.
-SetAside journal_lost(std::string_view service, const std::string& what, UtcTime now) {
-  return {.message_id = "journal/" + std::string(service),
-          .topic = {},
-          .asset_id = {},
-          .pst_id = {},
-          .since_ns = now.nanoseconds,
-          .reason = "the journal was lost and is made again from the neighbours' messages, but for " + what};
+constexpr const char* kJournalLost = "the journal was lost and is made again from the neighbours' messages";
+
+std::string journal_set_back(const std::string& other) {
+  return "the journal is older than what " + other +
+         " has read of it: a restored copy, or its end was cut off; what is missing is made again from the "
+         "neighbours' messages";
 }
 
 /// What `other`, of an earlier version, has taken, and keeps for nobody.
@@ -289,13 +287,19 @@ bool LayerRunner::reads_samples() const {
   return std::ranges::find(kind_->inputs(), Topic::raw_samples) != kind_->inputs().end();
 }
 
-/// Samples come from outside, and nobody sends them again: others make what they lost from their neighbours' messages.
+/// Others remember how far they read: further than this journal goes, or in one before it.
 void LayerRunner::hear_of_own_outputs(const ServiceStatus& status) {
-  if (!is_new_ || !reads_samples() || !strangers_.knows(status.writer_id)) return;
+  if (!strangers_.knows(status.writer_id)) return;
   for (const StreamPosition& read : status.received) {
     const auto topic = value_of<Topic>(read.topic);
-    const bool is_own = topic && std::ranges::find(kind_->outputs(), *topic) != kind_->outputs().end();
-    if (is_own && read.writer_id != journal_.writer_id() && read.sequence > 0) has_read_more_ = status.service;
+    if (!topic || read.sequence == 0) continue;
+    const bool is_own_kind = std::ranges::find(kind_->outputs(), *topic) != kind_->outputs().end();
+    if (read.writer_id == journal_.writer_id()) {
+      const auto written = journal_.written().find(*topic);
+      if (written == journal_.written().end() || written->second < read.sequence) set_back_before_ = status.service;
+    } else if (is_new_ && is_own_kind) {
+      has_read_more_ = status.service;
+    }
   }
 }
 
@@ -331,24 +335,47 @@ std::optional<std::string> LayerRunner::lost_for_ever() const {
 /// The neighbours' messages make the conclusions again, and their records have what people said. What nobody can give
 /// back would be missing in this service alone, and nobody would know.
 Status LayerRunner::compare_acts() {
-  if (!is_new_ || waits_for_acts_) return {};  // a restart before all acts are here waits for them again
+  if (waits_for_acts_) return {};  // a restart before all acts are here waits for them again
+  if (set_back_before_ && !tells_of_set_back_) {
+    tells_of_set_back_ = true;
+    if (Status told = tell_of_journal(journal_set_back(*set_back_before_), samples_lost_with(*set_back_before_)); !told)
+      return told;
+  }
+  if (!is_new_) return {};
   const auto what = lost_for_ever();
   if (!what && !all_heard()) return {};
   is_new_ = false;
-  const SetAside lost = journal_lost(kind_->name(), what.value_or(std::string()), clock_.now());
-  const bool is_known = std::ranges::find(set_aside_, lost.message_id, &SetAside::message_id) != set_aside_.end();
-  const bool tells = what && !is_known;  // a damaged one that was made again says so itself
-  Status kept = in_batch(
-      [&] {
-        Status done = journal_.no_longer_new();
-        return done && tells ? journal_.set_aside(lost) : done;
-      },
-      Survives::power_cuts);
-  if (!kept || !tells) return kept;
-  set_aside_.push_back(lost);
-  raise_alarm(lost);
-  note_error(lost.reason);
-  log_event(LogLevel::error, "journal lost", {{"error", lost.reason}});
+  Status kept = in_batch([&] { return journal_.no_longer_new(); }, Survives::power_cuts);
+  const bool is_remade = what || !has_read_more_.empty();
+  return kept && is_remade ? tell_of_journal(kJournalLost, what) : kept;
+}
+
+std::optional<std::string> LayerRunner::samples_lost_with(const std::string& other) const {
+  return reads_samples() ? std::optional(samples_of_earlier_tests(other)) : std::nullopt;
+}
+
+/// Where the journal itself noticed already (store/database.cpp), only what cannot be made again is added.
+Status LayerRunner::tell_of_journal(const std::string& reason, const std::optional<std::string>& lost) {
+  SetAside told{.message_id = "journal/" + std::string(kind_->name()),
+                .topic = {},
+                .asset_id = {},
+                .pst_id = {},
+                .since_ns = clock_.now().nanoseconds,
+                .reason = reason};
+  const auto known = std::ranges::find(set_aside_, told.message_id, &SetAside::message_id);
+  if (known != set_aside_.end()) {
+    if (!lost || known->reason.find(*lost) != std::string::npos) return {};
+    told = *known;
+  }
+  if (lost) told.reason += ", but for " + *lost;
+  if (Status kept = in_batch([&] { return journal_.set_aside(told); }, Survives::power_cuts); !kept) return kept;
+  if (known != set_aside_.end())
+    *known = told;
+  else
+    set_aside_.push_back(told);
+  raise_alarm(told);
+  note_error(told.reason);
+  log_event(LogLevel::error, "journal lost", {{"error", told.reason}});
   return {};
 }
 

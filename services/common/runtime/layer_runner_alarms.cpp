@@ -272,6 +272,14 @@ void LayerRunner::tell_of_synchronisation(ClockQuality quality) {
   if (is_new) log_event(LogLevel::warn, "clock is not synchronised", {{"error", text}});
 }
 
+void LayerRunner::tell_of_local_inputs() {
+  if (!options_.local_inputs) return;
+  const std::vector<ServiceAlarm> standing = options_.local_inputs->alarms();
+  for (const ServiceAlarm& stood : alarms_.of(kRecordingNotTaken, {}))
+    if (std::ranges::find(standing, stood) == standing.end()) alarms_.clear(stood.kind, stood.asset_id, stood.subject);
+  for (const ServiceAlarm& one : standing) alarms_.raise(one);
+}
+
 void LayerRunner::note_alarms_of(const Message& output) {
   const auto said = options_.alarms_of_output ? options_.alarms_of_output(output) : std::nullopt;
   if (!said) return;

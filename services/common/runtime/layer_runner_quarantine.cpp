@@ -22,6 +22,7 @@ Status LayerRunner::restore_quarantine() {
 }
 
 void LayerRunner::raise_alarm(const SetAside& message) {
+  alarms_.clear(kSetAside, message.asset_id, message.message_id);  // its reason may be another one now
   alarms_.raise({.kind = kSetAside,
                  .asset_id = message.asset_id,
                  .subject = message.message_id,

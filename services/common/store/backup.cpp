@@ -110,7 +110,7 @@ Result<std::string> restore_journal(const std::string& copy, const std::string& 
   const std::string file = Journal::file_of(connection);
   std::error_code failed;
   if (const fs::path folder = fs::path(file).parent_path(); !folder.empty()) fs::create_directories(folder, failed);
-  const auto lock = JournalLock::take(file);
+  auto lock = JournalLock::take(file);
   if (!lock) return fail(lock.error());
   fs::path folder = fs::path(file).parent_path();
   if (folder.empty()) folder = ".";
@@ -136,6 +136,8 @@ Result<std::string> restore_journal(const std::string& copy, const std::string& 
     return fail(std::move(error));
   }
   forget_damage(file);
+  if (const auto placed = JournalReader::open(connection, service); placed)
+    lock->remember({.writer_id = placed->writer_id()});
   return aside;
 }
 

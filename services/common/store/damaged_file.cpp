@@ -40,7 +40,7 @@ bool is_damage(const std::string& file, std::string_view complaint) {
   const auto says = [complaint](std::string_view words) { return complaint.find(words) != std::string_view::npos; };
   const bool damaged = says("malformed") || says("corrupt") || says("not a database") ||
                        says("unsupported file format") || says("no such table") || says("no such column") ||
-                       says("Cannot convert") || says("Null value fetched");
+                       says("no such index") || says("Cannot convert") || says("Null value fetched");
   const bool is_left_alone = says("readonly") && is_of_no_version(file);
   return (damaged || is_left_alone) && is_in_our_hands(file);
 }

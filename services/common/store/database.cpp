@@ -2,15 +2,21 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <stdexcept>
 #include <string_view>
 
 #include "services/common/store/connection_string.hpp"
 #include "services/common/store/damaged_file.hpp"
+#include "services/common/store/log_sync.hpp"
 
 namespace sealwatch {
 namespace {
+
+/// What is written since, only the neighbours miss in an older copy.
+constexpr std::chrono::minutes kRemembers{1};
 
 /// What to do about the database's complaint.
 std::string advice_for(std::string_view what, bool is_server) {
@@ -74,26 +80,76 @@ void Journal::Database::make_ready() {
   load_counters();
 }
 
-/// A file in which SQLite cannot find its way is moved aside, and the journal made again: the neighbours have their
-/// messages, and of the old file is kept what can be read of what people did.
+std::string Journal::Database::make_anew(const std::string& connection) {
+  checkpointer.reset();
+  sql.close();
+  std::string aside = move_aside(file);
+  connect(connection);
+  make_ready();
+  return aside;
+}
+
+/// A file in which SQLite cannot find its way, or that is another's, is moved aside, and the journal made again: the
+/// neighbours have their messages, and of the old file is kept what can be read of what people did.
 void Journal::Database::open(const std::string& connection) {
   if (connection.starts_with("sqlite3://")) take_file(file_of(connection));
   try {
     if (!file.empty() && is_known_damaged(file)) throw std::runtime_error("malformed when it was last used");
     connect(connection);
     make_ready();
+    compare_with_last();
+  } catch (const OtherJournal& other) {
+    const std::string aside = make_anew(connection);
+    tell_of_journal("the journal of " + other.writer_id + " was in the place of this service's and is now " + aside +
+                    "; this service's is made again from the neighbours' messages: restore a backup of its own");
   } catch (const std::exception& exception) {
     if (file.empty() || !is_damage(file, exception.what())) throw;
-    checkpointer.reset();
-    sql.close();
-    const std::string aside = move_aside(file);
-    connect(connection);
-    make_ready();
+    const std::string aside = make_anew(connection);
     keep_acts_of(aside, sql);
-    tell_of_damage(aside);
+    tell_of_journal(
+        "the journal was damaged and is made again from the neighbours' messages, with what people said; the old one "
+        "is " +
+        aside + ": see that sealwatch audit shows the acts in force, and acknowledge and shelve alarms again");
   }
   statements.emplace(sql);
   check_in_place();
+  note_last_used();
+  committed = last_ordinal;
+  remember();
+}
+
+void Journal::Database::compare_with_last() {
+  if (!lock || !lock->last()) return;
+  const long long ended = lock->last()->conclusions;
+  if (is_made)
+    tell_of_journal("the journal, or its write-ahead log, was removed; it is made again from the neighbours' messages");
+  else if (last_ordinal < ended)
+    tell_of_journal("the journal ends at conclusion " + std::to_string(last_ordinal) + " and went to " +
+                    std::to_string(ended) +
+                    ": it is an older copy, or its end was cut off; what is missing is made again from the "
+                    "neighbours' messages");
+}
+
+void Journal::Database::note_last_used() {
+  for (const char* last : {"SELECT received FROM inputs WHERE receipt = (SELECT max(receipt) FROM inputs)",
+                           "SELECT published FROM outputs WHERE ordinal = (SELECT max(ordinal) FROM outputs)"}) {
+    long long at = 0;
+    sql << last, soci::into(at);
+    last_used_ns = std::max(last_used_ns, at);
+  }
+  if (lock && lock->last()) last_used_ns = std::max(last_used_ns, lock->last()->at_ns);
+}
+
+void Journal::Database::remember() {
+  if (!lock || !statements || !LogSync(file + "-wal").sync()) return;
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  remembered = std::chrono::steady_clock::now();
+  lock->remember({writer_id, committed, std::chrono::duration_cast<std::chrono::nanoseconds>(now).count()});
+}
+
+void Journal::Database::remember_now_and_then() {
+  if (!lock || !lock->last() || lock->last()->conclusions == committed) return;
+  if (std::chrono::steady_clock::now() - remembered >= kRemembers) remember();
 }
 
 /// SQLite goes on with files that were removed, or that others took the place of: all that is written, and confirmed, is

@@ -4,6 +4,7 @@
 #include <soci/soci.h>
 #include <sys/types.h>
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <set>
@@ -29,7 +30,17 @@ inline constexpr const char* kToBeMended = "to_be_mended";
 /// Table meta: that nobody has compared the journal with others' records of acts since it was made.
 inline constexpr const char* kNewJournal = "new";
 
+/// A journal that is not the one that belongs in its place.
+struct OtherJournal {
+  std::string writer_id;
+};
+
 struct Journal::Database {
+  Database() = default;
+  ~Database() { remember(); }
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+
   std::string name;  ///< connection string as errors show it, without a password
   std::string service;
   soci::session sql;
@@ -46,8 +57,12 @@ struct Journal::Database {
   long long outputs_looked_up = 0;                              ///< up to here the indexes find them
   long long inputs_looked_up = 0;
   std::optional<JournalLock> lock;  ///< SQLite's
-  bool has_synced = false;          ///< the first batch brings the log's entry in its directory to the disk as well
-  std::string file;                 ///< SQLite's
+  bool is_made = false;             ///< by this process
+  long long committed = 0;          ///< outputs, as far as they are committed
+  std::chrono::steady_clock::time_point remembered;
+  long long last_used_ns = 0;  ///< by the wall clock, before it was opened
+  bool has_synced = false;     ///< the first batch brings the log's entry in its directory to the disk as well
+  std::string file;            ///< SQLite's
   std::map<std::string, std::pair<dev_t, ino_t>> opened_files;  ///< SQLite's, by path: which files they were
   std::optional<JournalStatements> statements;                  ///< after `sql`, as they must end before it
 
@@ -83,6 +98,13 @@ struct Journal::Database {
   void connect(const std::string& connection);
   /// From what is connected to a journal that can be used.
   void make_ready();
+  /// In the place of what was there, which is moved aside: returned is where it is now.
+  std::string make_anew(const std::string& connection);
+  void note_last_used();
+  /// The lock's mark, once what it says is on the disk.
+  void remember();
+  /// It waits for the disk.
+  void remember_now_and_then();
   [[nodiscard]] bool is_file() { return sql.get_backend_name() == "sqlite3"; }
 
   // schema.cpp
@@ -104,6 +126,7 @@ struct Journal::Database {
   void mend_outputs(bool all);
   void know_damaged_tests();
   void make_indexes_anew();
+  void check_small_tables();
   // journal_check.cpp
   /// Looks whether the indexes find the next rows; false once all were looked at. Throws Error where one does not.
   bool check_indexes();
@@ -112,7 +135,9 @@ struct Journal::Database {
   [[noreturn]] void must_be_mended(long long ordinal, const std::string& whose);
   /// The output, stamped, where one of its id was damaged: it now stands in its place.
   [[nodiscard]] std::optional<Message> fill_place(const Message& message, UtcTime publishing_time);
-  void tell_of_damage(const std::string& aside);
+  void tell_of_journal(const std::string& reason);
+  /// Whether it ends before the one that was used last, or that one is gone.
+  void compare_with_last();
   void fetch_again(const std::string& topic, const std::string& writer, long long sequence);
 };
 

@@ -48,6 +48,7 @@ Journal& Journal::operator=(Journal&& other) noexcept = default;
 
 const std::string& Journal::writer_id() const { return database_->writer_id; }
 const std::map<Topic, std::uint64_t>& Journal::written() const { return database_->written; }
+UtcTime Journal::last_used() const { return {database_->last_used_ns}; }
 std::uint64_t Journal::open_inputs() const { return database_->open_inputs; }
 
 std::function<bool()> Journal::to_disk() const {
@@ -131,7 +132,10 @@ Result<std::vector<StreamPosition>> Journal::positions() {
 }
 
 Status Journal::is_in_place() {
-  return database_->guard("looking for the journal", [&] { database_->check_in_place(); });
+  return database_->guard("looking for the journal", [&] {
+    database_->check_in_place();
+    database_->remember_now_and_then();
+  });
 }
 
 Status Journal::begin(Survives survives) {
@@ -145,6 +149,7 @@ Status Journal::commit() {
   return database_->guard("committing a batch", [&] {
     database_->sql.commit();
     database_->has_synced = true;
+    database_->committed = database_->last_ordinal;
     if (database_->checkpointer) database_->checkpointer->committed(database_->batch_rows);
   });
 }

@@ -125,6 +125,8 @@ class Journal {
   /// Inputs received and not consumed.
   [[nodiscard]] std::uint64_t open_inputs() const;
 
+  /// The latest time at which it is known to have been used before it was opened.
+  [[nodiscard]] UtcTime last_used() const;
   /// An Error where its files were removed or replaced meanwhile; begin() looks as well.
   [[nodiscard]] Status is_in_place();
 

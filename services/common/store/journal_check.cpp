@@ -50,8 +50,10 @@ Indexed look_up_inputs(soci::session& sql, long long after) {
   return look_up(sql, "receipt",
                  "EXISTS(SELECT 1 FROM inputs WHERE message_id = one.message_id AND +receipt = one.receipt)"
                  " AND (one.consumed <> 0 OR EXISTS(SELECT 1 FROM inputs INDEXED BY inputs_open WHERE consumed = 0"
-                 " AND asset_id = one.asset_id AND receipt = one.receipt))",
-                 "SELECT receipt, message_id, asset_id, consumed FROM inputs", after);
+                 " AND asset_id = one.asset_id AND receipt = one.receipt))"
+                 " AND (one.sequence <> 0 OR EXISTS(SELECT 1 FROM inputs INDEXED BY inputs_of_no_stream"
+                 " WHERE sequence = 0 AND topic = one.topic AND asset_id = one.asset_id AND receipt = one.receipt))",
+                 "SELECT receipt, message_id, topic, asset_id, consumed, sequence FROM inputs", after);
 }
 
 }  // namespace

@@ -5,9 +5,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
+#include <string_view>
 
 namespace sealwatch {
 namespace {
@@ -22,6 +25,25 @@ std::string this_process() {
   return std::string(machine.data()) + ", process " + std::to_string(::getpid());
 }
 
+/// Behind the line of the process.
+constexpr std::string_view kMark = "\njournal ";
+constexpr std::string_view kConclusions = ", conclusions ";
+constexpr std::string_view kAt = ", at ";
+
+std::optional<JournalMark> mark_in(std::string_view text) {
+  const std::size_t mark = text.find(kMark);
+  const std::size_t count = mark == std::string_view::npos ? mark : text.find(kConclusions, mark);
+  const std::size_t at = count == std::string_view::npos ? count : text.find(kAt, count);
+  if (at == std::string_view::npos) return std::nullopt;
+  const auto number = [text](std::size_t begin, long long& value) {
+    return std::from_chars(text.data() + begin, text.data() + text.size(), value).ec == std::errc();
+  };
+  JournalMark found;
+  found.writer_id = text.substr(mark + kMark.size(), count - mark - kMark.size());
+  const bool is_whole = number(count + kConclusions.size(), found.conclusions) && number(at + kAt.size(), found.at_ns);
+  return is_whole && !found.writer_id.empty() ? std::optional(found) : std::nullopt;
+}
+
 }  // namespace
 
 Result<JournalLock> JournalLock::take(const std::string& journal_file) {
@@ -34,19 +56,36 @@ Result<JournalLock> JournalLock::take(const std::string& journal_file) {
                       .rule = "unable to open its lock: " + std::string(std::strerror(errno)),
                       .advice = "check that the directory exists and that this user may write to it"});
   JournalLock lock(file, descriptor);
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
-    std::array<char, 300> owner{};
-    const bool known = ::read(descriptor, owner.data(), owner.size() - 1) > 0;
+  const bool is_taken = ::flock(descriptor, LOCK_EX | LOCK_NB) != 0;
+  std::array<char, 600> content{};
+  const ssize_t size = ::pread(descriptor, content.data(), content.size(), 0);
+  const std::string_view text(content.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+  if (is_taken)
     return fail(Error{.file = journal_file,
                       .place = "journal",
-                      .value = known ? owner.data() : "",
+                      .value = std::string(text.substr(0, text.find('\n'))),
                       .rule = "another process works with this journal",
                       .advice = kAdvice});
-  }
-  const std::string owner = this_process();
-  // For people alone: the lock holds where it cannot be written, too.
-  if (::ftruncate(descriptor, 0) == 0) (void)!::pwrite(descriptor, owner.data(), owner.size(), 0);
+  lock.last_ = mark_in(text);
+  lock.write();
   return lock;
+}
+
+void JournalLock::remember(const JournalMark& mark) {
+  last_ = mark;
+  write();
+}
+
+/// The lock holds where it cannot be written, too.
+void JournalLock::write() const {
+  std::string text = this_process();
+  if (last_) {
+    text.append(kMark).append(last_->writer_id);
+    text.append(kConclusions).append(std::to_string(last_->conclusions));
+    text.append(kAt).append(std::to_string(last_->at_ns)).append("\n");
+  }
+  if (::pwrite(descriptor_, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()))
+    (void)!::ftruncate(descriptor_, static_cast<off_t>(text.size()));
 }
 
 JournalLock::~JournalLock() {

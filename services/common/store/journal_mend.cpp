@@ -123,6 +123,7 @@ void tell(soci::session& sql, const DamagedRow& row, const std::string& reason) 
 }  // namespace
 
 void Journal::Database::mend() {
+  check_small_tables();
   soci::transaction transaction(sql);
   const bool all = !meta(kToBeMended).empty();
   if (all) make_indexes_anew();
@@ -133,6 +134,25 @@ void Journal::Database::mend() {
   sql << std::string("DELETE FROM meta WHERE name = '") + kToBeMended + "'";
   transaction.commit();
   know_damaged_tests();
+}
+
+/// All but inputs and outputs, which are looked at little by little. Some are read when something happens that seldom
+/// does: then it would be too late.
+void Journal::Database::check_small_tables() {
+  if (!is_file()) return;
+  for (const std::string table : {"meta", "positions", "quarantine", "acts", "anchors", "alarms"}) {
+    std::string answer;
+    const std::string check = "PRAGMA integrity_check('" + table + "')";
+    sql << check, into(answer);
+    if (answer == "ok") continue;
+    sql << "REINDEX " + table;
+    sql << check, into(answer);
+    if (answer != "ok") throw std::runtime_error("malformed: " + answer);
+  }
+  // Empty in most journals: no row of it is looked up.
+  int some = 0;
+  sql << "SELECT count(*) FROM (SELECT 1 FROM inputs INDEXED BY inputs_of_no_stream WHERE sequence = 0 LIMIT 1)",
+      into(some);
 }
 
 // What an index left out may have been written again: then two rows have one id, and no index of them can be made. Such a
@@ -269,13 +289,10 @@ std::optional<Message> Journal::Database::fill_place(const Message& message, Utc
   return placed;
 }
 
-void Journal::Database::tell_of_damage(const std::string& aside) {
+void Journal::Database::tell_of_journal(const std::string& reason) {
   DamagedRow row;
   row.message_id = "journal/" + service;
-  tell(sql, row,
-       "the journal was damaged and is made again from the neighbours' messages, with what people said; the old one "
-       "is " +
-           aside + ": see that sealwatch audit shows the acts in force, and acknowledge and shelve alarms again");
+  tell(sql, row, reason);
 }
 
 /// Reads the stream again from there; what is known is passed over by its id.

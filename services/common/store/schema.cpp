@@ -98,6 +98,7 @@ void Journal::Database::create_schema() {
   set_meta("writer_id", make_writer_id(service));
   set_meta(kNewJournal, "yes");
   transaction.commit();
+  is_made = true;
 }
 
 /// Where the two disagree in a file, a bit was turned in one of them: a newer program writes both.
@@ -127,7 +128,9 @@ void Journal::Database::check_meta() {
   const std::string owner = meta("service");
   const std::string checksum = meta("checksum");
   if (checksum.empty() || checksum == checksum_of_meta(owner, writer_id)) {
-    if (owner == service) return;
+    const bool is_another = lock && lock->last() && lock->last()->writer_id != writer_id;
+    if (owner == service && (is_made || !is_another)) return;
+    if (is_file()) throw OtherJournal{writer_id};
     throw Error{name, "table meta, service", owner, "must be '" + service + "': each service has a journal of its own",
                 "give each service its own file or, in PostgreSQL, its own schema"};
   }

@@ -349,6 +349,34 @@ class TimeTest : public RunnerTest {
 
 TEST_F(TimeTest, PassesOnceASecondInLiveOperation) { EXPECT_EQ(ticks_after({features("p1", 1)}), 2U); }
 
+/// A test would be overdue that nobody can make undone when the clock is right again.
+TEST_F(TimeTest, GoesOnAsItDidWhileTheClockMayBeWrong) {
+  std::vector<UtcTime> ticks;
+  const auto layer = [&ticks] {
+    auto made = std::make_unique<JoiningLayer>();
+    made->ticks = &ticks;
+    return made;
+  };
+  RunnerOptions options = fast_options();
+  options.assets = {"A"};
+  options.read_clock = [] { return ClockReading{}; };
+  Process process(network_, layer, place_.connection(), Fate(), options);
+  process.start();
+  const UtcTime begin = process.clock().now();
+  const auto steady_begin = std::chrono::steady_clock::now();
+  for (const double set_by_s : {0.0, 3.0e6, 0.0, -7200.0}) {
+    const std::size_t before = ticks.size();
+    ASSERT_TRUE(step_until([&] { return ticks.size() > before + 1; },
+                           [&] {
+                             const std::chrono::duration<double> elapsed =
+                                 std::chrono::steady_clock::now() - steady_begin;
+                             process.clock().set(add_seconds(begin, elapsed.count() + set_by_s));
+                             process.step();
+                           }));
+  }
+  for (const UtcTime& tick : ticks) EXPECT_LT(std::abs(seconds_between(begin, tick)), 60.0);
+}
+
 TEST_F(TimeTest, StandsStillInAReplay) { EXPECT_EQ(ticks_after({features("p1", 1, true)}), 0U); }
 
 TEST_F(TimeTest, PassesInAReplayOfAnAssetWhoseTestsAreDue) {
@@ -938,6 +966,42 @@ TEST(ClockWatch, TellsAStepUntilItIsMendedOrAnHourOld) {
   EXPECT_FALSE(at(watch, hours(8), -100.0));
   EXPECT_TRUE(at(watch, hours(8) + seconds(1), -100.0)) << "an hour without another";
   EXPECT_FALSE(watch.step_s());
+}
+
+TEST(ClockWatch, AClockBehindWhatWasWrittenWasSetBackBeforeTheStart) {
+  using std::chrono::seconds;
+  const UtcTime begin{1'900'000'000'000'000'000};
+  ClockWatch watch;
+  watch.begin(add_seconds(begin, 7200.0), begin, seconds(0));
+  EXPECT_NEAR(watch.step_s().value(), -7200.0, 0.1);
+  EXPECT_FALSE(watch.look(add_seconds(begin, 1.0), seconds(1)));
+  EXPECT_TRUE(watch.look(add_seconds(begin, 9000.0), seconds(2))) << "how long the machine was off, nobody knows";
+  EXPECT_FALSE(watch.step_s());
+  ClockWatch late;
+  late.begin(begin, add_seconds(begin, 86400.0), seconds(0));
+  EXPECT_FALSE(late.step_s());
+}
+
+TEST_F(RunnerTest, TellsAtItsStartAClockThatIsBehindItsJournal) {
+  RunnerOptions options = fast_options();
+  options.watches_clock = true;
+  {
+    Process process(network_, cutting, place_.connection(), Fate(), options);
+    process.start();
+    ASSERT_TRUE(process.journal().begin());
+    ASSERT_TRUE(process.journal().add_input(SampleBlock{}, process.clock().now(), true));
+    ASSERT_TRUE(process.journal().commit());
+  }
+  Process process(network_, cutting, place_.connection(), Fate(), options);
+  process.clock().set(add_seconds(process.clock().now(), -7200.0));
+  process.start();
+  const auto alarms = [&] {
+    listener_.listen(milliseconds(5));
+    return listener_.statuses.empty() ? std::vector<ServiceAlarm>{} : listener_.statuses.back().alarms;
+  };
+  ASSERT_TRUE(step_until([&] { return !alarms().empty(); }, [&] { process.step(); }));
+  EXPECT_EQ(alarms().front().kind, "clock_step");
+  EXPECT_THAT(alarms().front().text, HasSubstr("set back by 7200 s"));
 }
 
 TEST_F(RunnerTest, TellsAClockThatWasSetAsAnAlarmUntilItIsSetBack) {

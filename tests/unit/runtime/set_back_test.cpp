@@ -9,7 +9,12 @@ namespace {
 
 class SetBackTest : public ::testing::Test {
  protected:
-  SetBackTest() { process_.start(); }
+  explicit SetBackTest(const std::vector<std::string>& services = {}) : services_(services) { process_.start(); }
+  [[nodiscard]] RunnerOptions options() const {
+    RunnerOptions options = fast_options();
+    options.strangers.services = services_;
+    return options;
+  }
   /// Publishes test `pst` as number `sequence`.
   void send(std::uint64_t sequence, const std::string& pst) {
     TestFeatures features;
@@ -38,10 +43,11 @@ class SetBackTest : public ::testing::Test {
     return tests;
   }
 
+  std::vector<std::string> services_;
   Place place_;
   std::shared_ptr<InMemoryNetwork> network_ = std::make_shared<InMemoryNetwork>();
   InMemoryBus writer_{network_};
-  Process process_{network_, [] { return std::make_unique<JoiningLayer>(); }, place_.connection()};
+  Process process_{network_, [] { return std::make_unique<JoiningLayer>(); }, place_.connection(), Fate(), options()};
 };
 
 TEST_F(SetBackTest, ANumberThatComesWithAnotherMessageHasTheStreamReadAgain) {
@@ -81,6 +87,46 @@ TEST_F(SetBackTest, WhatComesAgainAsItWasChangesNothing) {
   send(2, "p2");
   send(3, "p3");
   EXPECT_THAT(received(), ::testing::ElementsAre("p1", "p2", "p3"));
+}
+
+/// What a neighbour says it has read of the own stream, in the own journal or in one before it.
+class OwnJournal : public SetBackTest {
+ protected:
+  OwnJournal() : SetBackTest({"health_assessment", "data_manipulation"}) {}
+  void hear_of_own(const std::string& writer, std::uint64_t read) {
+    ServiceStatus status;
+    status.service = "data_manipulation";
+    status.writer_id = "downstream";
+    status.received = {{"health_report", writer, read}};
+    EXPECT_TRUE(writer_.publish(status));
+    // An alarm is in the journal within a second or two.
+    EXPECT_TRUE(step_until([&] { return !told().empty() || std::chrono::steady_clock::now() > begin_ + wait_; },
+                           [&] { process_.step(); }));
+  }
+  std::vector<std::string> told() {
+    std::vector<std::string> reasons;
+    const std::vector<SetAside> found = process_.journal().quarantine().value();
+    for (const SetAside& one : found) reasons.push_back(one.reason);
+    return reasons;
+  }
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::chrono::milliseconds wait_{5000};
+};
+
+TEST_F(OwnJournal, OfWhichANeighbourReadMoreThanItHasIsAnAlarm) {
+  hear_of_own(process_.journal().writer_id(), 7);
+  EXPECT_THAT(told(), ::testing::ElementsAre(::testing::HasSubstr("older than what data_manipulation has read of it")));
+}
+
+TEST_F(OwnJournal, BeforeWhichThereWasAnotherIsAnAlarm) {
+  hear_of_own("joining-of-yesterday", 7);
+  EXPECT_THAT(told(), ::testing::ElementsAre(::testing::HasSubstr("the journal was lost")));
+}
+
+TEST_F(OwnJournal, OfWhichNobodyReadMoreIsNone) {
+  wait_ = std::chrono::milliseconds(1500);
+  hear_of_own(process_.journal().writer_id(), 0);
+  EXPECT_THAT(told(), ::testing::IsEmpty());
 }
 
 }  // namespace

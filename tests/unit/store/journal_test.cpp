@@ -317,7 +317,9 @@ TEST_P(JournalTest, TheLastInputOfNoStreamIsKnownByAsset) {
   EXPECT_EQ(journal.last_unnumbered_input(Topic::state_report, "B").value(), "");
 }
 
+/// A file is moved aside (last_journal_test.cpp), a schema cannot be.
 TEST_P(JournalTest, AJournalOfAnotherServiceIsRefused) {
+  if (GetParam() == "sqlite3") GTEST_SKIP() << "is moved aside";
   open("state_detection");
   const Result<Journal> journal = Journal::open(place_.connection(), "health_assessment");
   ASSERT_FALSE(journal.has_value());

@@ -210,8 +210,17 @@ TEST_F(Mend, AnIndexThatLeavesARowOutIsMadeAnew) {
     }
     return Status();
   };
-  for (const auto& [index, table, number, row] : {std::tuple{"outputs_of_asset", "outputs", "ordinal", "1"},
-                                                  std::tuple{"inputs_open", "inputs", "receipt", "3"}}) {
+  {
+    Message of_no_stream = features(4);
+    header_of(of_no_stream).stream_sequence = 0;
+    Journal journal = open();
+    ASSERT_TRUE(journal.begin());
+    ASSERT_TRUE(journal.add_input(of_no_stream, UtcTime{}, true));
+    ASSERT_TRUE(journal.commit());
+  }
+  for (const auto& [index, table, number, row] :
+       {std::tuple{"outputs_of_asset", "outputs", "ordinal", "1"}, std::tuple{"inputs_open", "inputs", "receipt", "3"},
+        std::tuple{"inputs_of_no_stream", "inputs", "receipt", "4"}}) {
     left_out(index, table, number, row);
     {
       Journal journal = open();
@@ -470,6 +479,31 @@ TEST_F(Header100, EveryTurnedBitLeavesAServiceThatStarts) {
       bytes[byte] = static_cast<char>(bytes[byte] ^ (1 << bit));
       expect_start(bytes);
     }
+}
+
+/// Also where nothing reads it before an alarm, an act or a message that is set aside comes.
+TEST_F(Header100, ALostPageOfASmallTableOrItsIndexIsNoticedAtTheStart) {
+  std::vector<std::pair<std::string, int>> pages;
+  {
+    soci::session sql(place_.connection());
+    soci::rowset<soci::row> rows =
+        (sql.prepare << "SELECT name, rootpage FROM sqlite_master WHERE rootpage > 0 AND tbl_name NOT IN"
+                        " ('inputs', 'outputs')");
+    for (const soci::row& row : rows) pages.emplace_back(row.get<std::string>(0), row.get<int>(1));
+  }
+  ASSERT_THAT(pages, SizeIs(::testing::Ge(6U)));
+  for (const auto& [name, page] : pages) {
+    SCOPED_TRACE(name);
+    for (const auto& entry : std::filesystem::directory_iterator(place_.directory()))
+      std::filesystem::remove(entry.path());
+    std::string bytes = whole_;
+    std::fill_n(bytes.begin() + (page - 1) * 1024, 1024, '\0');
+    std::ofstream(file_, std::ios::binary) << bytes;
+    Journal journal = open();
+    EXPECT_TRUE(std::filesystem::exists(file_.string() + ".damaged-1"));
+    ASSERT_THAT(journal.quarantine().value(), SizeIs(1));
+    EXPECT_THAT(journal.quarantine().value().at(0).reason, HasSubstr("damaged"));
+  }
 }
 
 TEST_F(Header100, NorDoesALostPageOrFileKeepItFromStarting) {

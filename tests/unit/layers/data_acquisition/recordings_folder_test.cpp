@@ -9,6 +9,7 @@
 #include <fstream>
 #include <functional>
 #include <set>
+#include <sstream>
 #include <thread>
 
 #include "services/common/recording/recording_file.hpp"
@@ -116,6 +117,27 @@ TEST_F(RecordingsFolderTest, OneThatIsOverwrittenWhenItsTestIsConcludedIsReadToo
   EXPECT_THAT(errors_, testing::IsEmpty());
 }
 
+/// As an archive unpacks them, of one size and time.
+TEST_F(RecordingsFolderTest, OneWhoseNameAnotherOfItsSizeAndTimeTakesIsReadToo) {
+  DataAcquisition layer(assets_);
+  Watched watched = folder(layer);
+  drop("april", "XT03-MV2");
+  (void)watched.look();
+  for (const Message& block : watched.look()) (void)layer.receive(block);
+  const fs::path file = directory_ / "april.csv", other = directory_ / "april.new";
+  std::stringstream text;
+  text << std::ifstream(file).rdbuf();
+  std::string another = text.str();
+  std::string::value_type& digit = another.at(another.find_last_of("0123456789"));
+  digit = digit == '1' ? '2' : '1';
+  std::ofstream(other) << another;
+  fs::last_write_time(other, fs::last_write_time(file));
+  fs::rename(other, file);
+  EXPECT_TRUE(watched.look().empty());
+  EXPECT_TRUE(fs::exists(file)) << "it is not the one that was read";
+  EXPECT_FALSE(watched.look().empty());
+}
+
 TEST_F(RecordingsFolderTest, LeavesACopyInProgressAlone) {
   DataAcquisition layer(assets_);
   Watched watched = folder(layer, 3);
@@ -163,6 +185,43 @@ TEST_F(RecordingsFolderTest, RejectsWhatCannotBeReadWithTheReason) {
   ASSERT_EQ(errors_.size(), 2U);
   EXPECT_THAT(errors_[0], testing::HasSubstr("abc"));
   EXPECT_THAT(errors_[1], testing::HasSubstr("XT09-MV9"));
+}
+
+/// Whoever drops recordings looks nowhere else: what is not taken is an alarm until somebody has seen to it.
+TEST_F(RecordingsFolderTest, WhatIsNotTakenIsAnAlarmUntilSomebodyHasSeenToIt) {
+  DataAcquisition layer(assets_);
+  const std::string long_name = std::string(240, 'x') + ".csv";
+  {
+    Watched watched = folder(layer);
+    drop("good", "XT03-MV2");
+    for (const std::string& name : {std::string("new\nline\x1b[31m.csv"), long_name})
+      std::ofstream(directory_ / name) << "time[s]\n";
+    for (int looks = 0; looks < 3; ++looks) watched.look();
+    const auto alarms = watched.folder.alarms();
+    ASSERT_THAT(alarms, testing::SizeIs(2));
+    for (const ServiceAlarm& alarm : alarms) {
+      EXPECT_EQ(alarm.kind, "recording_not_taken");
+      EXPECT_THAT(alarm.text, testing::AllOf(testing::HasSubstr("names no asset"), testing::HasSubstr("rejected/")));
+      EXPECT_EQ((alarm.subject + alarm.text).find_first_of("\n\x1b"), std::string::npos);
+    }
+  }
+  Watched restarted = folder(layer);
+  restarted.look();
+  EXPECT_THAT(restarted.folder.alarms(), testing::SizeIs(2)) << "a restart has seen to nothing";
+  fs::remove_all(directory_ / "rejected");
+  restarted.look();
+  EXPECT_THAT(restarted.folder.alarms(), testing::IsEmpty());
+}
+
+TEST_F(RecordingsFolderTest, OfManyThatAreRejectedTheFirstAreNamed) {
+  DataAcquisition layer(assets_);
+  Watched watched = folder(layer);
+  for (int k = 0; k < 30; ++k) std::ofstream(directory_ / (std::to_string(k) + ".csv")) << "time[s]\n";
+  for (int looks = 0; looks < 3; ++looks) watched.look();
+  const auto alarms = watched.folder.alarms();
+  ASSERT_THAT(alarms, testing::SizeIs(9));
+  EXPECT_EQ(alarms.back().subject, "others");
+  EXPECT_THAT(alarms.back().text, testing::HasSubstr("22 more"));
 }
 
 TEST_F(RecordingsFolderTest, ANameThatCameBeforeOverwritesNothing) {
@@ -232,11 +291,14 @@ TEST_F(RecordingsFolderTest, AFolderThatIsGoneIsToldOfOnceAndUsedWhenItIsBack) {
   fs::remove_all(directory_);
   for (int look = 0; look < 3; ++look) EXPECT_TRUE(watched.look().empty());
   EXPECT_THAT(errors_, testing::ElementsAre(testing::HasSubstr("recordings_directory: cannot be read: No such file")));
+  ASSERT_THAT(watched.folder.alarms(), testing::SizeIs(1));
+  EXPECT_THAT(watched.folder.alarms().front().text, testing::HasSubstr("nothing dropped there is taken"));
   fs::create_directories(directory_);
   drop("april", "XT03-MV2");
   EXPECT_TRUE(watched.look().empty());
   EXPECT_EQ(watched.look().size(), 2U);
   EXPECT_THAT(errors_, testing::SizeIs(1));
+  EXPECT_THAT(watched.folder.alarms(), testing::IsEmpty());
 }
 
 TEST_F(RecordingsFolderTest, FilesThatAreGoneAreForgotten) {

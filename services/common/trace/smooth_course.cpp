@@ -81,28 +81,78 @@ std::pair<double, double> Course::at(double time_s) const {
   return cubic(k, k + 1, slopes_[k], slopes_[k + 1], time_s);
 }
 
+namespace {
+
+/// Sums over windows of a course, each built from two of half its length: as much work for wide windows as for narrow.
+class WindowSums {
+ public:
+  explicit WindowSums(VectorXd values) : values_(std::move(values)), sums_(values_), moments_(VectorXd::Zero(size())) {}
+
+  [[nodiscard]] Index size() const { return values_.size(); }
+
+  void double_length() {
+    for (Index t = 0; t + 2 * length_ <= size(); ++t) {
+      moments_(t) += moments_(t + length_) + static_cast<double>(length_) * sums_(t + length_);
+      sums_(t) += sums_(t + length_);
+    }
+    length_ *= 2;
+  }
+
+  /// Per sample, of the line through `length` + 1 samples about each; through those that there are near to the ends.
+  [[nodiscard]] VectorXd slopes() const {
+    const Index half = length_ / 2;
+    VectorXd out(size());
+    for (Index t = half; t + half < size(); ++t) {
+      const double last = values_(t + half), sum = sums_(t - half) + last;
+      const double moment = moments_(t - half) + static_cast<double>(length_) * last;
+      out(t) = (moment - static_cast<double>(half) * sum) / squares(length_ + 1);
+    }
+    at_an_end(
+        half, [&](Index k) -> double { return values_(k); }, [&](Index k, double slope) { out(k) = slope; });
+    at_an_end(
+        half, [&](Index k) -> double { return values_(size() - 1 - k); },
+        [&](Index k, double slope) { out(size() - 1 - k) = -slope; });
+    return out;
+  }
+
+  /// Sum of the squared distances from their middle of so many samples.
+  [[nodiscard]] static double squares(Index count) {
+    const auto n = static_cast<double>(count);
+    return n * (n * n - 1.0) / 12.0;
+  }
+
+ private:
+  template <class Value, class Set>
+  void at_an_end(Index half, const Value& value, const Set& set) const {
+    double sum = 0.0, moment = 0.0;
+    Index count = 0;
+    for (Index k = 0; k < std::min(half, size()); ++k) {
+      for (; count <= std::min(k + half, size() - 1); ++count)
+        sum += value(count), moment += static_cast<double>(count) * value(count);
+      set(k, (moment - 0.5 * static_cast<double>(count - 1) * sum) / squares(count));
+    }
+  }
+
+  VectorXd values_;
+  VectorXd sums_;     ///< of the `length_` values from each on
+  VectorXd moments_;  ///< the same, each times its distance from the first
+  Index length_ = 1;
+};
+
+}  // namespace
+
 VectorXd smooth_slope(const VectorXd& values, double interval_s) {
   constexpr double kNoiseShare = 0.1;
   const double noise =
       signal::estimate_noise_floor({values.data(), static_cast<std::size_t>(values.size())}).standard_deviation;
   const Index n = values.size();
-  VectorXd slope(n);
+  WindowSums sums(values.array() - values.mean());
   for (Index k = 1;; k *= 2) {
-    // Least-squares line through 2k + 1 samples; nearer to the ends through as many as there are to either side.
-    double noise_of_slope = 0.0;
-    for (Index t = 0; t < n; ++t) {
-      const Index low = std::max<Index>(t - k, 0), high = std::min(t + k, n - 1);
-      const double middle = 0.5 * static_cast<double>(low + high);
-      double product = 0.0, squares = 0.0;
-      for (Index i = low; i <= high; ++i) {
-        const double x = static_cast<double>(i) - middle;
-        product += x * values(i), squares += x * x;
-      }
-      slope(t) = product / squares / interval_s;
-      noise_of_slope = noise / std::sqrt(squares) / interval_s;
-    }
+    sums.double_length();
+    VectorXd slope = sums.slopes() / interval_s;
+    const double noise_at_the_ends = noise / std::sqrt(WindowSums::squares(k + 1)) / interval_s;
     const double rms = std::sqrt(slope.squaredNorm() / static_cast<double>(n));
-    if (noise_of_slope <= kNoiseShare * rms || k > n / 50) return slope;
+    if (noise_at_the_ends <= kNoiseShare * rms || k > n / 50) return slope;
   }
 }
 

@@ -38,7 +38,7 @@ std::vector<VectorXd> pieces_of(Index samples, Index pieces, const SampleRange& 
 }  // namespace
 
 void FaultRegressors::add_drive(const std::string& name, const VectorXd& values) {
-  drives_.push_back({name, values, slope_(values)});
+  drives_.push_back({name, values, shape_of_(values).slope});
 }
 
 void FaultRegressors::set_motion(const VectorXd& velocity) {
@@ -47,14 +47,14 @@ void FaultRegressors::set_motion(const VectorXd& velocity) {
 }
 
 std::vector<Regime> FaultRegressors::regimes_of_course(const VectorXd& course) const {
-  return motion_.empty() ? regimes_of(slope_(course)) : motion_;
+  return motion_.empty() ? regimes_of(shape_of_(course).slope) : motion_;
 }
 
 std::vector<RegressorGroup> FaultRegressors::groups_of(const std::string& channel, const VectorXd& course,
                                                        const SampleRange& range) const {
   constexpr Index kSamplesAPiece = 12;
   const Index n = course.size();
-  const VectorXd &s = course, v = slope_(s), a = slope_(v);
+  const auto [s, v, a] = shape_of_(course);
   const double begin_s = time_s_.front(), length_s = time_s_.back() - begin_s;
   VectorXd t(n);
   for (Index k = 0; k < n; ++k) t(k) = 2.0 * (time_s_[static_cast<std::size_t>(k)] - begin_s) / length_s - 1.0;

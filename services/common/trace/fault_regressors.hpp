@@ -19,10 +19,15 @@ struct SampleRange {
 
 class FaultRegressors {
  public:
-  using Slope = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
+  /// A course's own white noise is in the difference, too: none of a sample's may be in its regressors.
+  struct Shape {
+    Eigen::VectorXd value, slope, curvature;
+  };
+  using ShapeOf = std::function<Shape(const Eigen::VectorXd&)>;
 
-  /// `time_s`: the common times, which outlive this. `slope`: d/dt at them.
-  FaultRegressors(const std::vector<double>& time_s, Slope slope) : time_s_(time_s), slope_(std::move(slope)) {}
+  /// `time_s`: the common times, which outlive this. `shape_of`: of a course at them.
+  FaultRegressors(const std::vector<double>& time_s, ShapeOf shape_of)
+      : time_s_(time_s), shape_of_(std::move(shape_of)) {}
 
   /// What may drive the simulation, as recorded.
   void add_drive(const std::string& name, const Eigen::VectorXd& values);
@@ -44,7 +49,7 @@ class FaultRegressors {
   };
 
   const std::vector<double>& time_s_;
-  Slope slope_;
+  ShapeOf shape_of_;
   std::vector<Drive> drives_;
   std::vector<Regime> motion_;
   std::vector<Eigen::VectorXd> saturations_;  ///< of the motion

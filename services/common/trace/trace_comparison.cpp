@@ -14,6 +14,7 @@
 #include "services/common/text/words.hpp"
 #include "services/common/trace/alterations.hpp"
 #include "services/common/trace/difference_tests.hpp"
+#include "services/common/trace/drafts.hpp"
 #include "services/common/trace/fault_regressors.hpp"
 #include "services/common/trace/regimes.hpp"
 
@@ -25,41 +26,15 @@ using Eigen::VectorXd;
 
 constexpr std::size_t kFewestSamples = 100;
 constexpr std::size_t kMostMemory = 30;     // samples that noise may depend on (difference_tests.cpp)
-constexpr double kShifted = 4.0;            // standard errors: what is nearer to nothing is nothing
 constexpr double kFarMoreLikely = 10.0;     // of -2 log L: very strong evidence (Kass and Raftery 1995)
+constexpr double kEven = 0.01;              // of the interval
 constexpr double kLeastOfTheSpread = 1e-9;  // rounding of the arithmetic, as a share of a channel's spread
-
-/// One channel on the common times.
-struct Pair {
-  std::string name, unit;
-  bool input = false;
-  bool stands_still = false;  ///< the recording, while the simulation moves
-  VectorXd recorded, simulated;
-  VectorXd between;  ///< variance of what the simulation's samples leave open of it
-  Course course;
-  double least_variance = 0.0;  ///< rounding of the arithmetic
-  double step_variance = 0.0;   ///< of the steps in which both are written
-  double white_variance = 0.0;  ///< of the recording's noise from sample to sample
-  double noise_variance = 0.0;  ///< of the difference: what no alteration can remove
-};
-
-/// An alteration that was fitted but not yet judged.
-struct Draft {
-  Alteration told;
-  std::vector<const Pair*> pairs;
-  AlterationFit fit;
-  Freedom freedom;
-};
 
 /// The misfit of a course and what a test says of it.
 struct Judged {
   double squares = 0.0;
   NoiseTest test;
 };
-
-std::span<const double> span_of(const VectorXd& values) {
-  return {values.data(), static_cast<std::size_t>(values.size())};
-}
 
 constexpr const char* kMapThem =
     "say with --map MAP.yaml which columns of the log are which (`sealwatch asset new --from LOG` writes a map), or "
@@ -189,13 +164,30 @@ class Comparison {
     return {};
   }
 
-  /// d/dt at the common times; over a gap along a smooth course.
-  [[nodiscard]] VectorXd slope_of(const VectorXd& values) const {
-    if (present_.size() == grid_times_s_.size()) return smooth_slope(values, interval_s_);
+  /// At the common times; over a gap along a smooth course.
+  [[nodiscard]] FaultRegressors::Shape shape_of(const VectorXd& values) const {
+    if (present_.size() == grid_times_s_.size()) {
+      SmoothCourse smooth = smooth_course(values, interval_s_);
+      VectorXd curvature = smooth.curvature(interval_s_);
+      return {std::move(smooth.beside), std::move(smooth.slope), std::move(curvature)};
+    }
     const Course between(out_.time_s, {values.begin(), values.end()});
     VectorXd whole(static_cast<Index>(grid_times_s_.size()));
     for (Index k = 0; k < whole.size(); ++k) whole(k) = between.at(grid_times_s_[static_cast<std::size_t>(k)]).first;
-    return smooth_slope(whole, interval_s_)(present_);
+    const SmoothCourse smooth = smooth_course(whole, interval_s_);
+    return {smooth.beside(present_), smooth.slope(present_), smooth.curvature(interval_s_)(present_)};
+  }
+
+  /// Without its own white noise, which a delay between samples would seem to lessen. One whose samples are not evenly
+  /// spaced is a solver's, and has none.
+  [[nodiscard]] static std::optional<Course> without_noise(const std::vector<double>& time_s,
+                                                           const std::vector<double>& values) {
+    const signal::SamplingGrid grid = signal::find_grid(time_s);
+    if (grid.missing_count > 0 || grid.jitter_std_s > kEven * grid.interval_s) return {};
+    const Eigen::Map<const VectorXd> written(values.data(), static_cast<Index>(values.size()));
+    const SmoothCourse smooth = smooth_course(written, grid.interval_s);
+    if (smooth.half_window == 1) return {};
+    return Course(time_s, {smooth.values.begin(), smooth.values.end()});
   }
 
   void take(const Series& channel) {
@@ -215,12 +207,15 @@ class Comparison {
               .input = input,
               .recorded = values,
               .simulated = values,
+              .noise = VectorXd::Zero(values.size()),
               .between = values,
-              .course = Course(simulated_.time_s, simulated->values)};
+              .course = Course(simulated_.time_s, simulated->values),
+              .smooth = without_noise(simulated_.time_s, simulated->values)};
     for (Index k = 0; k < values.size(); ++k) {
       const double time_s = out_.time_s[static_cast<std::size_t>(k)];
       pair.simulated(k) = pair.course.at(time_s).first;
-      pair.between(k) = pair.course.variance_at(time_s);
+      if (pair.smooth) pair.noise(k) = pair.simulated(k) - pair.smooth->at(time_s).first;
+      pair.between(k) = (pair.smooth ? *pair.smooth : pair.course).variance_at(time_s);
     }
     const double spread = std::sqrt((values.array() - values.mean()).square().mean());
     pair.least_variance = std::max(std::pow(kLeastOfTheSpread * spread, 2), 1e-300);
@@ -242,13 +237,12 @@ class Comparison {
     if (!(variance(pair.simulated) > moved) || moved > kOfTheNoise * (pair.white_variance + pair.step_variance))
       return false;
     const Freedom freedom{.gain = true, .offset = true};
-    const auto fit = fit_alteration(out_.time_s, {altered(pair, freedom)}, freedom, joints_);
+    const AlteredChannel channel{.recorded = pair.recorded,
+                                 .simulated = &pair.course,
+                                 .about = 0.0,
+                                 .least_variance = pair.least_variance + pair.between.mean()};
+    const auto fit = fit_alteration(out_.time_s, {channel}, freedom, joints_);
     return fit && follows_nothing(*fit, {.gain = true});
-  }
-
-  /// Of a gain that may be 0 nothing of the simulation is left to explain anything with.
-  [[nodiscard]] static bool follows_nothing(const AlterationFit& fit, const Freedom& freedom) {
-    return freedom.gain && std::abs(fit.gain) <= kShifted * fit.gain_std;
   }
 
   void find_motion() {
@@ -257,7 +251,7 @@ class Comparison {
         if (out_.motion.empty() && pair.unit == unit && !pair.input) {
           out_.motion = pair.name;
           const bool speed = std::string(unit).ends_with("/s");
-          faults_.set_motion(speed ? pair.simulated : slope_of(pair.simulated));
+          faults_.set_motion(speed ? pair.simulated - pair.noise : shape_of(pair.simulated).slope);
         }
   }
 
@@ -303,52 +297,14 @@ class Comparison {
     return out;
   }
 
-  /// An altered time lies between samples, and so it may where it was on one.
-  [[nodiscard]] static VectorXd between(const Pair& pair, const Freedom& freedom) {
-    if (!freedom.delay && !freedom.clock) return pair.between;
-    return VectorXd::Constant(pair.between.size(), pair.course.mean_variance());
-  }
+  [[nodiscard]] CommonTimes times() const { return {out_.time_s, joints_}; }
 
-  [[nodiscard]] static AlteredChannel altered(const Pair& pair, const Freedom& freedom, double about = 0.0) {
-    return {.recorded = pair.recorded,
-            .simulated = &pair.course,
-            .about = about,
-            .least_variance = pair.least_variance + between(pair, freedom).mean()};
-  }
-
-  [[nodiscard]] static std::vector<AlteredParameter> parameters_of(const AlterationFit& fit, const Freedom& freedom,
-                                                                   const std::string& unit) {
-    std::vector<AlteredParameter> out;
-    if (freedom.gain) out.push_back({"gain", fit.gain, fit.gain_std, "1"});
-    if (!freedom.gain && freedom.fixed_gain < 0.0) out.push_back({"gain", freedom.fixed_gain, 0.0, "1"});
-    if (freedom.offset) out.push_back({"offset", fit.offset, fit.offset_std, unit});
-    if (freedom.delay) out.push_back({"delay", fit.delay_s, fit.delay_std_s, "s"});
-    if (freedom.clock) out.push_back({"clock rate", fit.clock, fit.clock_std, "1"});
+  [[nodiscard]] std::optional<Draft> draft(const std::string& id, const std::string& where,
+                                           const std::vector<const Pair*>& pairs, const Freedom& freedom,
+                                           bool about_start = false) const {
+    std::optional<Draft> out = draft_of(times(), pairs, freedom, about_start);
+    if (out) out->told.id = id, out->told.where = where;
     return out;
-  }
-
-  /// Nothing where the fit finds none, or one that follows nothing of the simulation. Of several channels at once: the
-  /// share removed of their misfits, each in units of its noise.
-  [[nodiscard]] std::optional<Draft> draft(std::string id, std::string where, const std::vector<const Pair*>& pairs,
-                                           const Freedom& freedom, bool about_start = false) const {
-    std::vector<AlteredChannel> channels;
-    for (const Pair* pair : pairs) channels.push_back(altered(*pair, freedom, about_start ? pair->simulated(0) : 0.0));
-    std::optional<AlterationFit> fit = fit_alteration(out_.time_s, channels, freedom, joints_);
-    if (!fit || follows_nothing(*fit, freedom)) return {};
-    Alteration told{.id = std::move(id), .where = std::move(where), .parameters = {}};
-    told.parameters = parameters_of(*fit, freedom, pairs.front()->unit);
-    told.criterion = fit->criterion;
-    double before = 0.0, after = 0.0;
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
-      const Pair& pair = *pairs[k];
-      const auto beyond_noise = [&pair](const VectorXd& left) {
-        return std::max(left.squaredNorm() / static_cast<double>(left.size()) / pair.noise_variance - 1.0, 0.0);
-      };
-      before += beyond_noise(pair.recorded - pair.simulated);
-      after += beyond_noise((pair.recorded - fit->altered[k]).segment(fit->first, fit->count));
-    }
-    told.removed_share = before > 0.0 ? std::clamp(1.0 - after / before, 0.0, 1.0) : 0.0;
-    return Draft{.told = std::move(told), .pairs = pairs, .fit = std::move(*fit), .freedom = freedom};
   }
 
   /// Whether what an alteration leaves of its channels is noise.
@@ -357,16 +313,11 @@ class Comparison {
     if (std::ranges::any_of(draft.pairs, &Pair::stands_still)) return false;
     for (std::size_t k = 0; k < draft.pairs.size(); ++k) {
       const Pair& pair = *draft.pairs[k];
-      const Judged left = judge(pair, fit.altered[k], between(pair, draft.freedom), fit.first, fit.count);
+      const Judged left =
+          judge(pair, fit.altered[k], open_variance(pair, draft.freedom, draft.smooth), fit.first, fit.count);
       if (left.test.p_value < limit()) return false;
     }
     return true;
-  }
-
-  /// Criterion of no alteration at all: what is no better explains nothing.
-  [[nodiscard]] double unaltered_criterion(const std::vector<const Pair*>& pairs) const {
-    const std::optional<Draft> as_it_is = draft({}, {}, pairs, {});
-    return as_it_is ? as_it_is->told.criterion : std::numeric_limits<double>::infinity();
   }
 
   struct Way {
@@ -388,7 +339,7 @@ class Comparison {
          {"sign and sensor_bias", {.offset = true, .fixed_gain = -1.0}}},
         {{"sensor_gain, sensor_bias and sensor_lag", {.gain = true, .offset = true, .delay = true}}}};
     // Smooth noise may hide what an alteration leaves; another that is far more likely shows that it is no noise.
-    double best = unaltered_criterion({&pair}) - kFarMoreLikely;
+    double best = unaltered_criterion(times(), {&pair}) - kFarMoreLikely;
     for (const std::vector<Way>& level : levels) {
       std::vector<Draft> drafts;
       for (const Way& way : level)
@@ -439,7 +390,7 @@ class Comparison {
                   bool about_start) {
     std::optional<Draft> asked = draft(id, where, pairs, freedom, about_start);
     if (!asked) return;
-    asked->told.would_do = asked->told.criterion < unaltered_criterion(pairs) && leaves_noise(*asked);
+    asked->told.would_do = asked->told.criterion < unaltered_criterion(times(), pairs) && leaves_noise(*asked);
     out_.common.push_back(std::move(asked->told));
   }
 
@@ -513,7 +464,7 @@ class Comparison {
   Joints joints_;                     ///< of the common times
   std::vector<Pair> pairs_;
   TraceComparison out_;
-  FaultRegressors faults_{out_.time_s, [this](const VectorXd& values) { return slope_of(values); }};
+  FaultRegressors faults_{out_.time_s, [this](const VectorXd& values) { return shape_of(values); }};
 };
 
 }  // namespace

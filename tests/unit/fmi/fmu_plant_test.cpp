@@ -276,14 +276,17 @@ TEST(FmuPlant, OneThatLiesByItsInputsOrOfItsOutputsIsRefused) {
   }
 }
 
-// Sound at its start at 0.01 m, and all the way to 0.012. By inputs they are asked for only where a law is at one.
+// Sound at its start at 0.01 m, and all the way to 0.012. By inputs they are asked for only where a law is at one. The
+// spring's force changes by a hundredth of what the friction's does, over what is usual of each.
 TEST(FmuPlant, OneThatLiesWhereARunGoesIsRefusedThere) {
-  for (const char* binary : {"fmu_spring_lies_beyond2", "fmu_spring_lies_beyond_by_input2"}) {
+  for (const char* binary :
+       {"fmu_spring_lies_beyond2", "fmu_spring_lies_beyond_by_place2", "fmu_spring_lies_beyond_by_input2"}) {
     const TestFolder folder;
     TestUnit unit = spring_return(binary);
     unit.directional = true;
     const std::string fmu = folder.build(unit);
-    const auto plant = load_plant(written(folder, plant_text(binary)));
+    const std::string text = with(plant_text(binary), "start: position, size: 0.02", "start: position, size: 0.002");
+    const auto plant = load_plant(written(folder, text));
     ASSERT_TRUE(plant) << plant.error().front().describe();
     AssetConfig asset = nominal_asset(binary);
     asset.physics = {law_at("driver", "driver_dead_time", binary)};

@@ -169,7 +169,7 @@ TEST(Trace, WorkGrowsAsTheRowsDo) {
     EXPECT_FALSE(compare(recorded, simulated).consistent);
     return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   };
-  constexpr double kTimesTheRows = 16.0, kCaches = 2.5;
+  constexpr double kTimesTheRows = 16.0, kCaches = 1.5;
   const double few = cpu_s(0.01), many = cpu_s(0.01 / kTimesTheRows);
   std::printf("3000 rows: %.3f s, 48000 rows: %.3f s\n", few, many);
   EXPECT_LT(many, kCaches * kTimesTheRows * few);

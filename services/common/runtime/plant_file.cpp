@@ -163,6 +163,11 @@ void read_rest(YamlMap& root, TextPlant& plant) {
   for (const ParameterDescription& row : plant.parameters) parameters.push_back(row.name);
   root.read("load", plant.load, parameters);
   root.read("wears", plant.wears, parameters);
+  if (auto unseen = root.map("not_recorded")) {
+    need(*unseen, "drive", plant.not_recorded);
+    need(*unseen, "record", plant.record);
+    unseen->finish();
+  }
   root.read("maximum_order", plant.maximum_order,
             {.min = 1.0, .max = 5.0, .words = "must be an order of integration from 1 to 5"});
 }

@@ -8,6 +8,7 @@
 #include "sealwatch/core/file.hpp"
 #include "sealwatch/core/test_limits.hpp"
 #include "services/common/recording/cells.hpp"
+#include "services/common/recording/csv_rows.hpp"
 #include "services/common/recording/hdf5_reader.hpp"
 #include "services/common/recording/log_reader.hpp"
 #include "services/common/recording/mat_reader.hpp"
@@ -29,7 +30,7 @@ Result<Offer> offer_of_text(const std::string& file, const LogLayout& given) {
   std::string head(std::size_t{1} << 16U, '\0');
   in->read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(in->gcount()));
-  if (!in->eof()) head.resize(head.rfind('\n') + 1);
+  if (!in->eof()) head.resize(head.rfind(line_break_of(head)) + 1);
   const auto rows = rows_of(head, offer.layout.delimiter, offer.layout.first_row, kRowsLookedAt);
   for (std::size_t k = 0; k < offer.layout.header.size(); ++k) {
     offer.columns.push_back({offer.layout.header[k], offer.layout.units[k]});

@@ -24,6 +24,7 @@
 
 #include "sealwatch/core/result.hpp"
 #include "sealwatch/core/time_series.hpp"
+#include "sealwatch/model/driving_channels.hpp"
 #include "sealwatch/model/plant_description.hpp"
 
 namespace sealwatch {
@@ -155,6 +156,7 @@ struct RuntimePlant {
   std::vector<RuntimeOutput> outputs;  ///< in the order of y
   std::shared_ptr<const RuntimeEquations> equations;
   int maximum_order = 5;  ///< of the integrator; 2 where something oscillates almost undamped
+  PlantPart whole = {};   ///< what drives it beside its inputs, if anything
 };
 
 /// Makes the plant known by its description's name, before other threads run. An Error when the name is taken.

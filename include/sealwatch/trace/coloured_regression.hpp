@@ -3,7 +3,7 @@
 //   y = X beta + e,   e_t = a_1 e_(t-1) + ... + a_p e_(t-p) + w_t,   w_t white, variance s^2
 //
 // Coefficients a by Burg's method on what the regression leaves, beta by least squares on the filtered data, in turn until
-// both stay (Cochrane and Orcutt 1949). -2 log L = n log s^2 + const compares models of the same n; both sides of a
+// both stay (Cochrane and Orcutt 1949). What is filtered is summed up as it comes: a recording has many rows. -2 log L = n log s^2 + const compares models of the same n; both sides of a
 // comparison have noise of their own, so that neither smooth noise is taken for a difference nor a difference for noise.
 //
 // Effective number of samples, of a mean:  n_eff = n gamma_0 (1 - a_1 - ... - a_p)^2 / s^2, gamma_0 variance of e.
@@ -33,8 +33,14 @@ using Joints = std::vector<Eigen::Index>;
 [[nodiscard]] std::vector<Eigen::Index> whole_windows(Eigen::Index count, std::size_t first, const Joints& joints);
 
 /// w_t = x_t - a_1 x_(t-1) - ... for the t of whole_windows() (first >= p), column by column.
-[[nodiscard]] Eigen::MatrixXd whitened(const Eigen::MatrixXd& columns, const std::vector<double>& coefficients,
-                                       std::size_t first, const Joints& joints = {});
+[[nodiscard]] Eigen::MatrixXd whitened(const Eigen::Ref<const Eigen::MatrixXd>& columns,
+                                       const std::vector<double>& coefficients, std::size_t first,
+                                       const Joints& joints = {});
+
+/// The same of [X y], as products: [X y]'[X y].
+[[nodiscard]] Eigen::MatrixXd whitened_gram(const Eigen::Ref<const Eigen::MatrixXd>& X, const Eigen::VectorXd& y,
+                                            const std::vector<double>& coefficients, std::size_t first,
+                                            const Joints& joints = {});
 
 struct ColouredFit {
   Eigen::VectorXd beta;
@@ -47,8 +53,9 @@ struct ColouredFit {
 
 /// `order` of the noise; the first `first` samples (at least `order`) condition the likelihood. `least_variance`: what the
 /// innovations have at least, by rounding.
-[[nodiscard]] ColouredFit fit_coloured(const Eigen::VectorXd& y, const Eigen::MatrixXd& X, std::size_t order,
-                                       std::size_t first, double least_variance, const Joints& joints = {});
+[[nodiscard]] ColouredFit fit_coloured(const Eigen::VectorXd& y, const Eigen::Ref<const Eigen::MatrixXd>& X,
+                                       std::size_t order, std::size_t first, double least_variance,
+                                       const Joints& joints = {});
 
 /// n_eff of noise with these coefficients, 1 to n.
 [[nodiscard]] double effective_samples(const Eigen::VectorXd& noise, const std::vector<double>& coefficients);

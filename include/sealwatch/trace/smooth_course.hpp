@@ -1,7 +1,7 @@
 // A sampled course between its samples, and its slopes.
 //
 // Between two samples the cubic of Hermite with central differences as slopes (Catmull-Rom); beyond the ends the last
-// value. smooth_slope() takes the slope over as many samples as the course's own noise needs.
+// value. smooth_course() takes values and slopes over as many samples as the course's own noise needs.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,8 +36,18 @@ class Course {
   std::vector<double> missed_;  ///< of each sample, by the course through every second sample
 };
 
-/// d/dt of uniformly sampled values: central difference over k samples to either side, averaged, with the least k that
-/// brings the noise of the slope below a tenth of its root mean square.
+/// A uniformly sampled course without most of its own white noise, none of which reaches a sample's slope, curvature and
+/// `beside`. Lines through the 2k + 1 samples about each, with the least k that brings the noise of the slope below a tenth
+/// of its root mean square: k = 1 where there is next to none.
+struct SmoothCourse {
+  Eigen::Index half_window = 1;                                      ///< k
+  Eigen::VectorXd values, slope;                                     ///< of the lines
+  Eigen::VectorXd beside;                                            ///< mean of the window's other samples
+  [[nodiscard]] Eigen::VectorXd curvature(double interval_s) const;  ///< of slopes whose windows leave the sample out
+};
+[[nodiscard]] SmoothCourse smooth_course(const Eigen::VectorXd& values, double interval_s);
+
+/// Its slope alone: d/dt.
 [[nodiscard]] Eigen::VectorXd smooth_slope(const Eigen::VectorXd& values, double interval_s);
 
 }  // namespace sealwatch::trace

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <cmath>
 #include <limits>
 
 namespace sealwatch::dense {
@@ -47,15 +48,40 @@ MatrixXd orthonormal_basis_of_scaled(const View& columns, double threshold) {
   return orthonormal_basis(scaled, threshold);
 }
 
-LeastSquares least_squares(const View& a, const VectorXd& b) {
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr(a);
-  const Eigen::Index rank = qr.rank();
-  const MatrixXd root =
-      qr.matrixR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>().solve(MatrixXd::Identity(rank, rank));
-  MatrixXd permuted = MatrixXd::Zero(a.cols(), a.cols());
-  permuted.topLeftCorner(rank, rank) = product_transposed(root, root);
-  return {.solution = qr.solve(b),
-          .unscaled_covariance = qr.colsPermutation() * permuted * qr.colsPermutation().transpose()};
+std::vector<Eigen::Index> independent_columns(const MatrixXd& gram, double threshold) {
+  const Eigen::Index n = gram.cols();
+  const VectorXd length = gram.diagonal().cwiseMax(0.0).cwiseSqrt();
+  VectorXd left = (length.array() > 0.0).cast<double>();  // of each column's square
+  MatrixXd lower = MatrixXd::Zero(n, n);
+  std::vector<Eigen::Index> chosen;
+  Eigen::Index next = 0;
+  while (static_cast<Eigen::Index>(chosen.size()) < n && left.maxCoeff(&next) > threshold) {
+    const auto k = static_cast<Eigen::Index>(chosen.size());
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (!(length(i) > 0.0)) continue;
+      const double known = lower.row(i).head(k).dot(lower.row(next).head(k));
+      lower(i, k) = (gram(i, next) / (length(i) * length(next)) - known) / std::sqrt(left(next));
+    }
+    left -= lower.col(k).cwiseAbs2();
+    left(next) = 0.0;
+    chosen.push_back(next);
+  }
+  return chosen;
+}
+
+LeastSquares least_squares(const MatrixXd& gram, const VectorXd& product) {
+  constexpr double kRounding = 1e-13;
+  LeastSquares least{.solution = VectorXd::Zero(gram.cols()),
+                     .unscaled_covariance = MatrixXd::Zero(gram.cols(), gram.cols())};
+  const std::vector<Eigen::Index> kept = independent_columns(gram, kRounding);
+  if (kept.empty()) return least;
+  const MatrixXd inner = gram(kept, kept);
+  const VectorXd scale = inner.diagonal().cwiseSqrt().cwiseInverse();
+  const Symmetric factor(scaled(inner, scale));
+  least.solution(kept) = scale.cwiseProduct(factor.solve(scale.cwiseProduct(product(kept))));
+  const auto n = static_cast<Eigen::Index>(kept.size());
+  least.unscaled_covariance(kept, kept) = scaled(factor.solve_columns(MatrixXd::Identity(n, n)), scale);
+  return least;
 }
 
 }  // namespace sealwatch::dense

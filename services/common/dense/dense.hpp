@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <vector>
 
 namespace sealwatch::dense {
 
@@ -52,11 +53,15 @@ class Symmetric {
 /// The same, with each column first scaled to length 1.
 [[nodiscard]] Eigen::MatrixXd orthonormal_basis_of_scaled(const View& columns, double threshold = 0.0);
 
-/// min |A x - b|, by pivoted QR.
+/// Columns that say something new beside those chosen before them, the largest first, of which A'A is `gram`; each is
+/// scaled to length 1 first. `threshold`: of what is left of a column, squared. Below about 1e-13 rounding decides.
+[[nodiscard]] std::vector<Eigen::Index> independent_columns(const Eigen::MatrixXd& gram, double threshold);
+
+/// min |A x - b| of A'A and A'b. Columns that say nothing new have no part in it.
 struct LeastSquares {
   Eigen::VectorXd solution;
   Eigen::MatrixXd unscaled_covariance;  ///< (A'A)^-1; 0 in directions that A does not show
 };
-[[nodiscard]] LeastSquares least_squares(const View& a, const Eigen::VectorXd& b);
+[[nodiscard]] LeastSquares least_squares(const Eigen::MatrixXd& gram, const Eigen::VectorXd& product);
 
 }  // namespace sealwatch::dense

@@ -243,6 +243,7 @@ class Builder {
     RuntimePlant plant;
     plant.description = description();
     plant.maximum_order = text_.maximum_order;
+    plant.whole = {.inputs = {}, .window_s = 0.0, .not_recorded = text_.not_recorded, .record = text_.record};
     for (std::size_t k = 0; k < text_.states.size(); ++k)
       plant.states.push_back({.scale = scale_of(k), .slow = text_.states[k].own, .settles = text_.states[k].settles});
     for (std::size_t k = 0; k < text_.outputs.size(); ++k)

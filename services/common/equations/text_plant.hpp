@@ -97,6 +97,7 @@ struct TextPlant {
   std::map<std::string, double> law_sizes;
   double window_s = 0.0;
   std::string load, wears;
+  std::string not_recorded, record;  ///< what drives it and stands in no recording, and what would show that
   int maximum_order = 5;
 };
 

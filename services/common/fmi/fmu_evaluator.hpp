@@ -19,10 +19,10 @@ struct BlockValues {
   RuntimeMatrix by_state, by_input, by_parameter;
 };
 
-/// A way from a point, in SI: of the states or of the inputs.
+/// How far to go beside a point, in SI: in each of the states or of the inputs alone; 0: not at all.
 struct BesidePoint {
   bool of_states = true;
-  std::vector<double> way;
+  std::vector<double> sizes;
 };
 
 /// The FMU itself: begins, and gives z at points.
@@ -68,9 +68,11 @@ class RunningBlock {
   /// Whether the derivatives that the unit gave at the point asked last are those of its values: looked at ever less
   /// often, so that no fifth of a run is passed over; false three times in a row: trouble.
   [[nodiscard]] bool derivatives_hold(double time_s, const EvaluationRequest& asked);
-  /// z at the last point asked, a share of a way off; nothing where the unit has no value there.
-  [[nodiscard]] std::optional<std::vector<double>> z_beside(double time_s, const BesidePoint& beside, double share);
-  /// The first row of z whose derivatives along the way are not those of its values; nothing where none is wrong.
+  [[nodiscard]] BesidePoint beside_inputs() const;
+  /// dz by a step from the last point asked, over its share of a size; nothing where the unit has no value there.
+  [[nodiscard]] std::optional<std::vector<double>> slope_along(double time_s, const BesidePoint& beside,
+                                                               std::size_t column, double share);
+  /// The first row of z with a derivative that is not that of its values; nothing where none is wrong.
   [[nodiscard]] std::optional<std::size_t> false_row(double time_s, const BesidePoint& beside,
                                                      const RuntimeMatrix& given);
   void end_at(double time_s);
@@ -93,8 +95,9 @@ class RunningBlock {
   EvaluationRequest known_;
   double ended_s_ = std::numeric_limits<double>::infinity();  ///< when it asked to end: it has no values after that
   double step_s_ = 0.0;                                       ///< of a Co-Simulation unit with equal steps
-  double stepped_to_s_ = std::numeric_limits<double>::quiet_NaN();            ///< by a Co-Simulation unit
-  std::uint64_t times_differentiated_ = 0, next_look_ = 0, times_false_ = 0;  ///< the last in a row
+  double stepped_to_s_ = std::numeric_limits<double>::quiet_NaN();  ///< by a Co-Simulation unit
+  std::uint64_t times_differentiated_ = 0, next_look_ = 0;
+  std::uint64_t times_false_by_state_ = 0, times_false_by_input_ = 0;  ///< in a row
   BlockValues values_;
   std::string trouble_;
 };

@@ -249,6 +249,7 @@ Status add_plant(RuntimePlant plant) {
                                 const TimeSeries& recorded, PhysicsTerms terms) {
     return RuntimePlantSimulation::create(shared, description, asset, recorded, std::move(terms));
   };
+  simulator.whole = shared->whole;
   return add_plant(shared->description, std::move(simulator));
 }
 

@@ -147,7 +147,8 @@ Result<std::unique_ptr<PlantSimulation>> PlantSimulation::create(const AssetConf
 
 PlantPart simulated_part(const AssetConfig& asset, const TimeSeries& recorded) {
   const auto simulator = std::ranges::find(plant_simulators(), asset.model, &PlantSimulator::model);
-  if (simulator == plant_simulators().end() || has_all(recorded, simulator->inputs)) return {};
+  if (simulator == plant_simulators().end()) return {};
+  if (has_all(recorded, simulator->inputs)) return simulator->whole;
   const AlternativeSimulator* of = that_is_driven(*simulator, recorded);
   return of ? of->part : PlantPart{};
 }

@@ -25,6 +25,7 @@ struct PlantSimulator {
   std::vector<std::string> inputs;  ///< that must be recorded
   SimulatePlant simulate = nullptr;
   std::vector<AlternativeSimulator> alternatives = {};  ///< where `inputs` are not recorded: the first
+  PlantPart whole = {};                                 ///< no inputs of its own: the plant's
 };
 
 /// A plant that comes with sealwatch: a folder of services/common/model/plants.

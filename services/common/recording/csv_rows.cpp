@@ -46,6 +46,11 @@ char* single_blanks(char* begin, char* end) {
 
 }  // namespace
 
+char line_break_of(std::string_view begin) {
+  const bool old = begin.find('\n') == std::string_view::npos && begin.find('\r') != std::string_view::npos;
+  return old ? '\r' : '\n';
+}
+
 /// Reads one more block behind what no row has taken yet; false at the end of the file.
 bool CsvRows::fill() {
   if (begin_ > 0) std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
@@ -56,11 +61,15 @@ bool CsvRows::fill() {
   const auto count = static_cast<std::size_t>(in_.gcount());
   hasher_.add({buffer_.data() + end_, count});
   end_ += count;
-  if (row_ == 0 && std::string_view(buffer_.data(), end_).starts_with(kByteOrderMark)) begin_ = kByteOrderMark.size();
+  if (row_ == 0) {
+    const std::string_view first(buffer_.data(), end_);
+    if (first.starts_with(kByteOrderMark)) begin_ = kByteOrderMark.size();
+    line_break_ = line_break_of(first);
+  }
   return count > 0;
 }
 
-/// Position of the line feed that ends the row at begin_, or end_ when the file ends first. Line feeds inside quotes
+/// Position of the line break that ends the row at begin_, or end_ when the file ends first. Line breaks inside quotes
 /// do not count: the row has an even number of quotes before its end.
 Result<std::size_t> CsvRows::find_row_end(bool quotes_count) {
   has_quotes_ = false;
@@ -69,7 +78,7 @@ Result<std::size_t> CsvRows::find_row_end(bool quotes_count) {
   for (;;) {
     const char* const start = buffer_.data() + begin_ + scanned;
     const std::size_t count = end_ - begin_ - scanned;
-    const auto* const feed = count > 0 ? static_cast<const char*>(std::memchr(start, '\n', count)) : nullptr;
+    const auto* const feed = count > 0 ? static_cast<const char*>(std::memchr(start, line_break_, count)) : nullptr;
     const std::size_t line = feed != nullptr ? static_cast<std::size_t>(feed - start) : count;
     const auto quotes = quotes_count ? std::count(start, start + line, '"') : 0;
     has_quotes_ = has_quotes_ || quotes > 0;

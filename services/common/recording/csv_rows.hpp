@@ -1,6 +1,6 @@
 // Rows of an RFC 4180 file, read in blocks: memory does not grow with the file.
 //
-//   row  = cell *("," cell) line-break         line-break = [CR] LF, may be missing after the last row
+//   row  = cell *("," cell) line-break         line-break = [CR] LF, may be missing after the last row; CR where no LF is
 //   cell = plain text | '"' *(text | '""') '"'
 // A UTF-8 byte order mark before the first row is skipped. Other delimiters than the comma serve foreign logs; blanks as
 // delimiters stand in runs of any length, tabs among them.
@@ -16,6 +16,9 @@
 #include "sealwatch/core/text.hpp"
 
 namespace sealwatch {
+
+/// What ends the rows of a file that begins like this: LF, or the CR of old instruments, which write no LF.
+[[nodiscard]] char line_break_of(std::string_view begin);
 
 class CsvRows {
  public:
@@ -38,6 +41,7 @@ class CsvRows {
 
   std::istream& in_;
   char delimiter_;
+  char line_break_ = '\n';
   std::vector<char> buffer_;
   std::size_t begin_ = 0;  ///< first byte in buffer_ that no row has taken
   std::size_t end_ = 0;    ///< past the last byte in buffer_

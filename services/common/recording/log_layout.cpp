@@ -203,9 +203,10 @@ std::vector<std::string> split_at(std::string_view line, char delimiter) {
 
 Rows rows_of(std::string_view head, char delimiter, std::size_t first_row, std::size_t most) {
   Rows rows;
+  const char line_break = line_break_of(head);
   std::size_t number = 0;
   while (!head.empty() && rows.size() < most) {
-    const std::size_t length = std::min(head.find('\n'), head.size());
+    const std::size_t length = std::min(head.find(line_break), head.size());
     if (++number >= first_row) {
       std::istringstream line{std::string(head.substr(0, length))};
       CsvRows cells(line, delimiter);

@@ -215,12 +215,13 @@ Result<FoundLayout> layout_of(std::istream& in, const LogLayout& given) {
   in.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(in.gcount()));
   const bool whole = in.eof();
+  const char line_break = line_break_of(head);
   in.clear();
   in.seekg(begin);
-  if (!whole && head.find('\n') == std::string::npos)
+  if (!whole && head.find(line_break) == std::string::npos)
     return fail(error_at("row 1, column 1", {}, "the row is longer than " + std::to_string(kHead_bytes) + " bytes",
                          "a log has rows that end in a line feed"));
-  if (!whole) head.resize(head.rfind('\n') + 1);  // the last row may be cut
+  if (!whole) head.resize(head.rfind(line_break) + 1);  // the last row may be cut
   if (head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF"))
     return fail(error_at("row 1, column 1", {}, "the file is UTF-16 text", "save it as UTF-8"));
   return find_layout(head, given);

@@ -81,9 +81,10 @@ Status read_noise(const KeyValue& item, const PlantDescription& plant, Sidecar& 
   if (!noises) return fail(noises.error());
   for (const KeyValue& noise : *noises) {
     double value = 0.0;
-    if (!noise.value.IsScalar() || !YAML::convert<double>::decode(noise.value, value) || !(value > 0.0) ||
-        std::isinf(value))
-      return fail(key_error(noise, "must be a positive number", "leave it out where it is not known"));
+    if (!noise.value.IsScalar() || !YAML::convert<double>::decode(noise.value, value) ||
+        !(value >= 1e-100 && value <= 1e100))  // residuals are divided by it, and their squares summed up
+      return fail(
+          key_error(noise, "must be a positive number, from 1e-100 to 1e100", "leave it out where it is not known"));
     out.noise_std[noise.key.substr(item.key.size() + 1)] = value;
   }
   return {};

@@ -89,7 +89,8 @@ NumberRule rule_of(const SensorKey& key, const std::string& channel, const Plant
   if (key.target == &SensorSetting::offset_error) return kAnyNumber;
   const auto row = std::ranges::find(plant.channels, channel, &ChannelDescription::name);
   const bool has_noise = row != plant.channels.end() && row->noise_std > 0.0;
-  return key.target == &SensorSetting::noise_std && has_noise ? kPositive : kNotNegative;
+  if (key.target != &SensorSetting::noise_std) return kNotNegative;
+  return has_noise ? kNoise : kNoiseOrNone;
 }
 
 /// Either channel by channel, {pressure_a: {noise_std: 1.0e4}}, or key by key, {noise_std: {pressure_a: 1.0e4}}.

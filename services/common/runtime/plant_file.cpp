@@ -39,11 +39,11 @@ Role read_role(YamlMap& map) {
   return static_cast<Role>(std::ranges::find(names, role) - names.begin());
 }
 
-ChannelDescription read_channel(const std::string& name, YamlMap& map) {
+ChannelDescription read_channel(const std::string& name, YamlMap& map, const NumberRule& of_noise) {
   ChannelDescription channel{.name = name, .unit = {}, .meaning = name};
   need(map, "unit", channel.unit);
   map.read("meaning", channel.meaning);
-  map.read("noise_std", channel.noise_std, kNotNegative);
+  map.read("noise_std", channel.noise_std, of_noise);
   map.read("time_constant", channel.time_constant_s, kNotNegative);
   read_range(map, channel);
   channel.role = read_role<ChannelRole>(map);
@@ -52,7 +52,7 @@ ChannelDescription read_channel(const std::string& name, YamlMap& map) {
 
 void read_channels(YamlMap& root, TextPlant& plant) {
   for_each(root, "inputs", [&](const std::string& name, YamlMap& map) {
-    equations::TextInput input{.channel = read_channel(name, map)};
+    equations::TextInput input{.channel = read_channel(name, map, kNoiseOrNone)};
     input.channel.input = true;
     std::string course = "as_recorded";
     map.read("course", course, {"as_recorded", "band_limited", "held", "averaged"});
@@ -65,7 +65,7 @@ void read_channels(YamlMap& root, TextPlant& plant) {
     plant.inputs.push_back(std::move(input));
   });
   for_each(root, "outputs", [&](const std::string& name, YamlMap& map) {
-    equations::TextOutput output{.channel = read_channel(name, map), .value = {}};
+    equations::TextOutput output{.channel = read_channel(name, map, kNoise), .value = {}};
     need(map, "value", output.value);
     plant.outputs.push_back(std::move(output));
   });
@@ -163,6 +163,11 @@ void read_rest(YamlMap& root, TextPlant& plant) {
   for (const ParameterDescription& row : plant.parameters) parameters.push_back(row.name);
   root.read("load", plant.load, parameters);
   root.read("wears", plant.wears, parameters);
+  if (auto unseen = root.map("not_recorded")) {
+    need(*unseen, "drive", plant.not_recorded);
+    need(*unseen, "record", plant.record);
+    unseen->finish();
+  }
   root.read("maximum_order", plant.maximum_order,
             {.min = 1.0, .max = 5.0, .words = "must be an order of integration from 1 to 5"});
 }

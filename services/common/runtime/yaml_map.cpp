@@ -202,7 +202,8 @@ bool YamlMap::read(const std::string& key, double& target, const NumberRule& rul
   const auto text = scalar(key, rule.words);
   if (!text) return false;
   const auto number = number_of(*text);
-  if (!number || *number < rule.min || *number > rule.max || (rule.min_excluded && *number == rule.min)) {
+  if (!number || *number < rule.min || *number > rule.max || (rule.min_excluded && *number == rule.min) ||
+      (*number != 0.0 && std::abs(*number) < rule.least_but_zero)) {
     fault(key, *text, rule.words);
     return false;
   }

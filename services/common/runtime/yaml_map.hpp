@@ -28,11 +28,20 @@ struct NumberRule {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   bool min_excluded = false;
+  double least_but_zero = 0.0;  ///< what is not 0 is at least so large
   const char* words = "must be a number";
 };
 inline constexpr NumberRule kAnyNumber{};
 inline constexpr NumberRule kPositive{.min = 0.0, .min_excluded = true, .words = "must be a number above 0"};
 inline constexpr NumberRule kNotNegative{.min = 0.0, .words = "must be a number, 0 or above"};
+/// Residuals are divided by a noise, and their squares summed up.
+inline constexpr double kLeastNoise = 1e-100, kMostNoise = 1e100;
+inline constexpr NumberRule kNoise{
+    .min = kLeastNoise, .max = kMostNoise, .words = "must be a number above 0, from 1e-100 to 1e100"};
+inline constexpr NumberRule kNoiseOrNone{.min = 0.0,
+                                         .max = kMostNoise,
+                                         .least_but_zero = kLeastNoise,
+                                         .words = "must be 0 or a number from 1e-100 to 1e100"};
 
 class YamlMap {
  public:

@@ -21,6 +21,7 @@ constexpr double kLargestClockError = 0.12;
 constexpr Index kScanned = 1000;  // samples that the global search looks at
 constexpr int kNearDelays = 200, kFarDelays = 100, kSteps = 12;
 constexpr std::size_t kLargestOrder = 30;
+constexpr double kNoGain = 1e-6;  // of the criterion
 
 /// theta = (g, b, tau, c), whichever are free.
 struct Parameters {
@@ -31,7 +32,10 @@ class Problem {
  public:
   Problem(const std::vector<double>& time_s, const std::vector<AlteredChannel>& channels, const Freedom& freedom,
           const Joints& joints)
-      : time_s_(time_s), channels_(channels), freedom_(freedom), joints_(joints) {}
+      : time_s_(time_s), channels_(channels), freedom_(freedom), joints_(joints) {
+    for (const AlteredChannel& channel : channels_)
+      spreads_.push_back((channel.recorded.array() - channel.recorded.mean()).square().mean());
+  }
 
   std::optional<AlterationFit> solve() {
     Parameters theta{freedom_.fixed_gain, 0.0, 0.0, 1.0};
@@ -59,11 +63,11 @@ class Problem {
     double begin = -std::numeric_limits<double>::infinity(), end = -begin;
     for (const AlteredChannel& channel : channels_)
       begin = std::max(begin, channel.simulated->begin_s()), end = std::min(end, channel.simulated->end_s());
-    Index first = 0, last = static_cast<Index>(time_s_.size());
     const double rounding = 1e-9 * length_s();
-    while (first < last && warped(time_s_[static_cast<std::size_t>(first)], theta) < begin - rounding) ++first;
-    while (last > first && warped(time_s_[static_cast<std::size_t>(last - 1)], theta) > end + rounding) --last;
-    return {first, last - first};
+    const auto at = [&](double time_s) { return warped(time_s, theta); };
+    const auto first = std::ranges::lower_bound(time_s_, begin - rounding, {}, at);
+    const auto last = std::ranges::upper_bound(first, time_s_.end(), end + rounding, {}, at);
+    return {first - time_s_.begin(), last - first};
   }
 
   /// Least squares of g and b where these are free, for one channel.
@@ -89,7 +93,8 @@ class Problem {
     if (2 * count < static_cast<Index>(time_s_.size())) return std::numeric_limits<double>::infinity();
     const Index step = std::max<Index>(1, count / kScanned), rows = count / step;
     double misfit = 0.0;
-    for (const AlteredChannel& channel : channels_) {
+    for (std::size_t c = 0; c < channels_.size(); ++c) {
+      const AlteredChannel& channel = channels_[c];
       VectorXd s(rows), y(rows);
       for (Index k = 0; k < rows; ++k) {
         const Index t = first + k * step;
@@ -98,8 +103,7 @@ class Problem {
       }
       fit_line(s, y, channel, freedom_, theta.gain, theta.offset);
       const VectorXd left = y.array() - channel.about - theta.offset - theta.gain * (s.array() - channel.about);
-      const double spread = (channel.recorded.array() - channel.recorded.mean()).square().mean();
-      if (spread > 0.0) misfit += left.squaredNorm() / static_cast<double>(rows) / spread;
+      if (spreads_[c] > 0.0) misfit += left.squaredNorm() / static_cast<double>(rows) / spreads_[c];
     }
     return misfit;
   }
@@ -179,13 +183,12 @@ class Problem {
       VectorXd left;
       MatrixXd slopes;
       residual(channels_[c], theta, first, count, left, slopes);
-      const VectorXd white = whitened(left, noises_[c], kLargestOrder, joints);
-      if (white.size() == 0) return std::numeric_limits<double>::infinity();
-      const MatrixXd design = whitened(slopes, noises_[c], kLargestOrder, joints);
-      const double variance =
-          std::max(white.squaredNorm() / static_cast<double>(white.size()), channels_[c].least_variance);
-      normal += dense::transposed_product(design, design) / variance;
-      gradient += design.transpose() * white / variance;
+      const MatrixXd gram = whitened_gram(slopes, left, noises_[c], kLargestOrder, joints);
+      const double samples = static_cast<double>(whole_windows(count, kLargestOrder, joints).size());
+      if (!(samples > 0.0)) return std::numeric_limits<double>::infinity();
+      const double variance = std::max(gram(free, free) / samples, channels_[c].least_variance);
+      normal += gram.topLeftCorner(free, free) / variance;
+      gradient += gram.topRightCorner(free, 1) / variance;
       criterion += static_cast<double>(time_s_.size()) * std::log(variance);
     }
     return criterion;
@@ -200,14 +203,15 @@ class Problem {
     return theta;
   }
 
-  /// Gauss-Newton with the present noise, halved steps where the criterion would rise. Keeps the covariance.
+  /// Gauss-Newton with the present noise, halved steps where the criterion would rise, until a step would gain nothing.
+  /// Keeps the covariance.
   double refine(Parameters& theta) {
     MatrixXd normal;
     VectorXd gradient;
     double criterion = linearise(theta, normal, gradient);
     for (int round = 0; round < kSteps && freedom_.count() > 0; ++round) {
       const VectorXd step = dense::Symmetric(normal).solve(gradient);
-      if (!step.allFinite()) break;
+      if (!step.allFinite() || !(gradient.dot(step) > kNoGain)) break;
       bool better = false;
       for (double share = 1.0; share > 0.01 && !better; share *= 0.5) {
         const Parameters tried = moved(theta, step, share);
@@ -216,7 +220,7 @@ class Problem {
         VectorXd next_gradient;
         const double next = linearise(tried, next_normal, next_gradient);
         if (!(next < criterion)) continue;
-        better = criterion - next > 1e-6;
+        better = criterion - next > kNoGain;
         theta = tried, criterion = next, normal = next_normal, gradient = next_gradient;
       }
       if (!better) break;
@@ -254,6 +258,7 @@ class Problem {
   const std::vector<AlteredChannel>& channels_;
   Freedom freedom_;
   const Joints& joints_;
+  std::vector<double> spreads_;              ///< of the recorded channels: variances
   std::vector<std::vector<double>> noises_;  ///< coefficients, one set a channel
   MatrixXd covariance_;
 };

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "services/common/dense/dense.hpp"
+#include "services/common/dense/row_products.hpp"
 
 namespace sealwatch::trace {
 namespace {
@@ -46,6 +47,20 @@ void burg_orders(std::span<const double> values, std::size_t largest, const Each
 }
 
 constexpr int kRounds = 4;  // of noise and regression in turn: the likelihood stays then to a thousandth
+constexpr double kStays = 1e-3;
+constexpr Index kBlock = 256;  // rows that are filtered at once: they stay in the cache
+
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// w_t of `out.rows()` rows from t = `row` on.
+void filter(const Eigen::Ref<const MatrixXd>& columns, const std::vector<double>& coefficients, Index row,
+            Eigen::Ref<MatrixXd> out) {
+  assert(row >= static_cast<Index>(coefficients.size()));
+  out = columns.middleRows(row, out.rows());
+  for (Index c = 0; c < out.cols(); ++c)
+    for (std::size_t k = 0; k < coefficients.size(); ++k)
+      out.col(c) -= coefficients[k] * columns.col(c).segment(row - static_cast<Index>(k) - 1, out.rows());
+}
 
 }  // namespace
 
@@ -85,42 +100,67 @@ std::vector<Index> whole_windows(Index count, std::size_t first, const Joints& j
   return rows;
 }
 
-MatrixXd whitened(const MatrixXd& columns, const std::vector<double>& coefficients, std::size_t first,
+MatrixXd whitened(const Eigen::Ref<const MatrixXd>& columns, const std::vector<double>& coefficients, std::size_t first,
                   const Joints& joints) {
-  assert(first >= coefficients.size());
   const auto skipped = static_cast<Index>(first);
-  const Index rows = columns.rows() - skipped;
-  MatrixXd out = columns.bottomRows(rows);
-  for (std::size_t k = 0; k < coefficients.size(); ++k)
-    out -= coefficients[k] * columns.middleRows(skipped - static_cast<Index>(k) - 1, rows);
+  MatrixXd out(std::max<Index>(columns.rows() - skipped, 0), columns.cols());
+  for (Index row = 0; row < out.rows(); row += kBlock) {
+    const Index rows = std::min(kBlock, out.rows() - row);
+    filter(columns, coefficients, skipped + row, out.middleRows(row, rows));
+  }
   if (joints.empty()) return out;
   std::vector<Index> kept = whole_windows(columns.rows(), first, joints);
   for (Index& row : kept) row -= skipped;
   return out(kept, Eigen::all);
 }
 
-ColouredFit fit_coloured(const VectorXd& y, const MatrixXd& X, std::size_t order, std::size_t first,
+MatrixXd whitened_gram(const Eigen::Ref<const MatrixXd>& X, const VectorXd& y, const std::vector<double>& coefficients,
+                       std::size_t first, const Joints& joints) {
+  assert(first >= coefficients.size());
+  const std::vector<Index> kept = joints.empty() ? std::vector<Index>() : whole_windows(y.size(), first, joints);
+  auto next = kept.begin();
+  MatrixXd gram = MatrixXd::Zero(X.cols() + 1, X.cols() + 1), white(kBlock, X.cols() + 1);
+  RowMatrix rows(kBlock, X.cols() + 1);
+  for (Index row = static_cast<Index>(first); row < y.size(); row += kBlock) {
+    const Index count = std::min(kBlock, y.size() - row);
+    filter(X, coefficients, row, white.topLeftCorner(count, X.cols()));
+    filter(y, coefficients, row, white.topRightCorner(count, 1));
+    Index used = 0;
+    if (joints.empty())
+      rows.topRows(used = count) = white.topRows(count);
+    else
+      for (; next != kept.end() && *next < row + count; ++next) rows.row(used++) = white.row(*next - row);
+    gram += dense::gram_of_rows(rows.topRows(used));
+  }
+  return gram;
+}
+
+ColouredFit fit_coloured(const VectorXd& y, const Eigen::Ref<const MatrixXd>& X, std::size_t order, std::size_t first,
                          double least_variance, const Joints& joints) {
   ColouredFit fit;
   fit.beta = VectorXd::Zero(X.cols());
+  fit.residual = y;
   const auto n = static_cast<double>(whole_windows(y.size(), first, joints).size());
   fit.coefficients.assign(order, 0.0);
   for (int round = 0; round <= kRounds; ++round) {
-    const MatrixXd design = whitened(X, fit.coefficients, first, joints);
-    const VectorXd target = whitened(y, fit.coefficients, first, joints);
     if (X.cols() > 0) {
-      dense::LeastSquares least = dense::least_squares(design, target);
-      fit.beta = std::move(least.solution);
-      fit.covariance = std::move(least.unscaled_covariance);
+      // Of what is left: each round also takes away what rounding left of the one before.
+      const MatrixXd gram = whitened_gram(X, fit.residual, fit.coefficients, first, joints);
+      const dense::LeastSquares least =
+          dense::least_squares(gram.topLeftCorner(X.cols(), X.cols()), gram.topRightCorner(X.cols(), 1));
+      fit.beta += least.solution;
+      fit.residual.noalias() -= X * least.solution;
+      fit.covariance = least.unscaled_covariance;
     }
-    fit.residual = y - X * fit.beta;
-    fit.innovation_variance =
-        std::max(whitened(fit.residual, fit.coefficients, first, joints).squaredNorm() / n, least_variance);
-    if (round < kRounds)
-      fit.coefficients = burg({fit.residual.data(), static_cast<std::size_t>(fit.residual.size())}, order);
+    const double innovation = whitened(fit.residual, fit.coefficients, first, joints).squaredNorm() / n;
+    const double before = fit.minus_two_log_likelihood;
+    fit.innovation_variance = std::max(innovation, least_variance);
+    fit.minus_two_log_likelihood = n * std::log(fit.innovation_variance);
+    const bool stays = round > 0 && std::abs(fit.minus_two_log_likelihood - before) < kStays;
+    if (round == kRounds || stays) break;
+    fit.coefficients = burg({fit.residual.data(), static_cast<std::size_t>(fit.residual.size())}, order);
   }
   fit.covariance *= fit.innovation_variance;
-  fit.minus_two_log_likelihood = n * std::log(fit.innovation_variance);
   return fit;
 }
 

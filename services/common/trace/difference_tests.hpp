@@ -23,7 +23,7 @@ namespace sealwatch::trace {
 
 struct RegressorGroup {
   std::string name;  ///< in words: "shift, scale and delay"
-  Eigen::MatrixXd columns;
+  std::vector<Eigen::VectorXd> columns;
 };
 
 struct GroupTest {
@@ -45,8 +45,9 @@ struct LeastVariances {
   Eigen::VectorXd between = {};  ///< of each sample, what the simulation's samples leave open; empty: nothing
 };
 
-/// `partitions`: columns of 0 and 1, one 1 a row at most. `joints`: gaps in the residual (coloured_regression.hpp).
-[[nodiscard]] NoiseTest test_noise(const Eigen::VectorXd& residual, const std::vector<RegressorGroup>& groups,
+/// The constant is in every group by itself. `partitions`: columns of 0 and 1, one 1 a row at most. `joints`: gaps in the
+/// residual (coloured_regression.hpp).
+[[nodiscard]] NoiseTest test_noise(const Eigen::VectorXd& residual, std::vector<RegressorGroup> groups,
                                    const std::vector<RegressorGroup>& partitions, const LeastVariances& least,
                                    const Joints& joints = {});
 

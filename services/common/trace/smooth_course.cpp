@@ -81,29 +81,115 @@ std::pair<double, double> Course::at(double time_s) const {
   return cubic(k, k + 1, slopes_[k], slopes_[k + 1], time_s);
 }
 
-VectorXd smooth_slope(const VectorXd& values, double interval_s) {
+namespace {
+
+/// Of the lines through windows, at each sample.
+struct Lines {
+  VectorXd values, slopes, beside;
+};
+
+/// Sums over windows of a course, each built from two of half its length: as much work for wide windows as for narrow.
+class WindowSums {
+ public:
+  explicit WindowSums(VectorXd values) : values_(std::move(values)), sums_(values_), moments_(VectorXd::Zero(size())) {}
+
+  [[nodiscard]] Index size() const { return values_.size(); }
+
+  void double_length() {
+    for (Index t = 0; t + 2 * length_ <= size(); ++t) {
+      moments_(t) += moments_(t + length_) + static_cast<double>(length_) * sums_(t + length_);
+      sums_(t) += sums_(t + length_);
+    }
+    length_ *= 2;
+  }
+
+  /// Per sample, of the line through `length` + 1 samples about each; through those that there are near to the ends.
+  [[nodiscard]] Lines lines() const {
+    const Index half = length_ / 2, last = size() - 1;
+    Lines out{VectorXd(size()), VectorXd(size()), VectorXd(size())};
+    const auto set = [&](Index at, double way, const Line& line) {
+      out.slopes(at) = way * line.slope, out.values(at) = line.value, out.beside(at) = line.beside;
+    };
+    for (Index t = half; t + half <= last; ++t) {
+      const double end = values_(t + half), sum = sums_(t - half) + end;
+      const double moment = moments_(t - half) + static_cast<double>(length_) * end;
+      set(t, 1.0, line(length_ + 1, half, sum, moment, values_(t)));
+    }
+    at_an_end(
+        half, [&](Index k) { return k; }, [&](Index k, const Line& line) { set(k, 1.0, line); });
+    at_an_end(
+        half, [&](Index k) { return last - k; }, [&](Index k, const Line& line) { set(last - k, -1.0, line); });
+    return out;
+  }
+
+  /// Sum of the squared distances from their middle of so many samples.
+  [[nodiscard]] static double squares(Index count) {
+    const auto n = static_cast<double>(count);
+    return n * (n * n - 1.0) / 12.0;
+  }
+
+ private:
+  struct Line {
+    double value, slope, beside;
+  };
+
+  /// Through `count` samples, of their sum and moment about the first, at sample `at`, which is `own`.
+  [[nodiscard]] static Line line(Index count, Index at, double sum, double moment, double own) {
+    const double n = static_cast<double>(count), middle = 0.5 * (n - 1.0);
+    const double slope = (moment - middle * sum) / squares(count);
+    return {sum / n + slope * (static_cast<double>(at) - middle), slope, (sum - own) / (n - 1.0)};
+  }
+
+  template <class Place, class Set>
+  void at_an_end(Index half, const Place& place, const Set& set) const {
+    double sum = 0.0, moment = 0.0;
+    Index count = 0;
+    for (Index k = 0; k < std::min(half, size()); ++k) {
+      for (; count <= std::min(k + half, size() - 1); ++count)
+        sum += values_(place(count)), moment += static_cast<double>(count) * values_(place(count));
+      set(k, line(count, k, sum, moment, values_(place(k))));
+    }
+  }
+
+  VectorXd values_;
+  VectorXd sums_;     ///< of the `length_` values from each on
+  VectorXd moments_;  ///< the same, each times its distance from the first
+  Index length_ = 1;
+};
+
+}  // namespace
+
+SmoothCourse smooth_course(const VectorXd& values, double interval_s) {
   constexpr double kNoiseShare = 0.1;
   const double noise =
       signal::estimate_noise_floor({values.data(), static_cast<std::size_t>(values.size())}).standard_deviation;
   const Index n = values.size();
-  VectorXd slope(n);
+  const double mean = values.mean();
+  WindowSums sums(values.array() - mean);
   for (Index k = 1;; k *= 2) {
-    // Least-squares line through 2k + 1 samples; nearer to the ends through as many as there are to either side.
-    double noise_of_slope = 0.0;
-    for (Index t = 0; t < n; ++t) {
-      const Index low = std::max<Index>(t - k, 0), high = std::min(t + k, n - 1);
-      const double middle = 0.5 * static_cast<double>(low + high);
-      double product = 0.0, squares = 0.0;
-      for (Index i = low; i <= high; ++i) {
-        const double x = static_cast<double>(i) - middle;
-        product += x * values(i), squares += x * x;
-      }
-      slope(t) = product / squares / interval_s;
-      noise_of_slope = noise / std::sqrt(squares) / interval_s;
-    }
-    const double rms = std::sqrt(slope.squaredNorm() / static_cast<double>(n));
-    if (noise_of_slope <= kNoiseShare * rms || k > n / 50) return slope;
+    sums.double_length();
+    Lines lines = sums.lines();
+    lines.slopes /= interval_s;
+    const double noise_at_the_ends = noise / std::sqrt(WindowSums::squares(k + 1)) / interval_s;
+    const double rms = std::sqrt(lines.slopes.squaredNorm() / static_cast<double>(n));
+    if (noise_at_the_ends > kNoiseShare * rms && k <= n / 50) continue;
+    return {.half_window = k,
+            .values = k == 1 ? values : VectorXd(lines.values.array() + mean),
+            .slope = std::move(lines.slopes),
+            .beside = lines.beside.array() + mean};
   }
 }
+
+VectorXd SmoothCourse::curvature(double interval_s) const {
+  const Index last = slope.size() - 1, reach = half_window + 1;
+  VectorXd out(slope.size());
+  for (Index t = 0; t <= last; ++t) {
+    const Index from = std::max<Index>(t - reach, 0), to = std::min(t + reach, last);
+    out(t) = (slope(to) - slope(from)) / (static_cast<double>(to - from) * interval_s);
+  }
+  return out;
+}
+
+VectorXd smooth_slope(const VectorXd& values, double interval_s) { return smooth_course(values, interval_s).slope; }
 
 }  // namespace sealwatch::trace

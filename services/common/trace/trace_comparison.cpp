@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "sealwatch/estimation/residual_statistics.hpp"
 #include "sealwatch/signal/noise_floor.hpp"
@@ -13,39 +14,21 @@
 #include "services/common/text/words.hpp"
 #include "services/common/trace/alterations.hpp"
 #include "services/common/trace/difference_tests.hpp"
+#include "services/common/trace/drafts.hpp"
+#include "services/common/trace/fault_regressors.hpp"
 #include "services/common/trace/regimes.hpp"
 
 namespace sealwatch::trace {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t kFewestSamples = 100;
 constexpr std::size_t kMostMemory = 30;     // samples that noise may depend on (difference_tests.cpp)
-constexpr double kShifted = 4.0;            // standard errors: what is nearer to nothing is nothing
 constexpr double kFarMoreLikely = 10.0;     // of -2 log L: very strong evidence (Kass and Raftery 1995)
+constexpr double kEven = 0.01;              // of the interval
 constexpr double kLeastOfTheSpread = 1e-9;  // rounding of the arithmetic, as a share of a channel's spread
-
-/// One channel on the common times.
-struct Pair {
-  std::string name, unit;
-  bool input = false;
-  bool stands_still = false;  ///< the recording, while the simulation moves
-  VectorXd recorded, simulated;
-  VectorXd between;  ///< variance of what the simulation's samples leave open of it
-  Course course;
-  double least_variance = 0.0;  ///< rounding of the arithmetic
-  double step_variance = 0.0;   ///< of the steps in which both are written
-  double white_variance = 0.0;  ///< of the recording's noise from sample to sample
-};
-
-/// What may drive the simulation, as recorded.
-struct Drive {
-  std::string name;
-  VectorXd values;
-};
 
 /// The misfit of a course and what a test says of it.
 struct Judged {
@@ -53,18 +36,11 @@ struct Judged {
   NoiseTest test;
 };
 
-MatrixXd beside(const std::vector<VectorXd>& columns) {
-  MatrixXd out(columns.front().size(), static_cast<Index>(columns.size()));
-  for (std::size_t k = 0; k < columns.size(); ++k) out.col(static_cast<Index>(k)) = columns[k];
-  return out;
-}
-
-/// Where a file has samples. One without a usual interval, as a solver of variable steps writes it, has no gaps.
 constexpr const char* kMapThem =
     "say with --map MAP.yaml which columns of the log are which (`sealwatch asset new --from LOG` writes a map), or "
-    "give "
-    "both the same column names";
+    "give both the same column names";
 
+/// Where a file has samples. One without a usual interval, as a solver of variable steps writes it, has no gaps.
 class Presence {
  public:
   explicit Presence(const std::vector<double>& time_s) : time_s_(time_s) {
@@ -103,7 +79,7 @@ class Comparison {
     if (const Status common = find_common(); !common) return fail(common.error());
     find_motion();
     for (Pair& pair : pairs_) pair.stands_still = stands_still(pair);
-    for (const Pair& pair : pairs_) {
+    for (Pair& pair : pairs_) {
       if (options_.progress) options_.progress(out_.channels.size(), pairs_.size() + 1);
       out_.channels.push_back(compare(pair));
     }
@@ -188,13 +164,30 @@ class Comparison {
     return {};
   }
 
-  /// d/dt at the common times; over a gap along a smooth course.
-  [[nodiscard]] VectorXd slope_of(const VectorXd& values) const {
-    if (present_.size() == grid_times_s_.size()) return smooth_slope(values, interval_s_);
+  /// At the common times; over a gap along a smooth course.
+  [[nodiscard]] FaultRegressors::Shape shape_of(const VectorXd& values) const {
+    if (present_.size() == grid_times_s_.size()) {
+      SmoothCourse smooth = smooth_course(values, interval_s_);
+      VectorXd curvature = smooth.curvature(interval_s_);
+      return {std::move(smooth.beside), std::move(smooth.slope), std::move(curvature)};
+    }
     const Course between(out_.time_s, {values.begin(), values.end()});
     VectorXd whole(static_cast<Index>(grid_times_s_.size()));
     for (Index k = 0; k < whole.size(); ++k) whole(k) = between.at(grid_times_s_[static_cast<std::size_t>(k)]).first;
-    return smooth_slope(whole, interval_s_)(present_);
+    const SmoothCourse smooth = smooth_course(whole, interval_s_);
+    return {smooth.beside(present_), smooth.slope(present_), smooth.curvature(interval_s_)(present_)};
+  }
+
+  /// Without its own white noise, which a delay between samples would seem to lessen. One whose samples are not evenly
+  /// spaced is a solver's, and has none.
+  [[nodiscard]] static std::optional<Course> without_noise(const std::vector<double>& time_s,
+                                                           const std::vector<double>& values) {
+    const signal::SamplingGrid grid = signal::find_grid(time_s);
+    if (grid.missing_count > 0 || grid.jitter_std_s > kEven * grid.interval_s) return {};
+    const Eigen::Map<const VectorXd> written(values.data(), static_cast<Index>(values.size()));
+    const SmoothCourse smooth = smooth_course(written, grid.interval_s);
+    if (smooth.half_window == 1) return {};
+    return Course(time_s, {smooth.values.begin(), smooth.values.end()});
   }
 
   void take(const Series& channel) {
@@ -206,7 +199,7 @@ class Comparison {
     const bool input = std::ranges::find(options_.inputs, channel.name) != options_.inputs.end();
     if (simulated == nullptr) {
       out_.only_recorded.push_back(channel.name);
-      drives_.push_back({channel.name, values});
+      faults_.add_drive(channel.name, values);
       return;
     }
     Pair pair{.name = channel.name,
@@ -214,12 +207,15 @@ class Comparison {
               .input = input,
               .recorded = values,
               .simulated = values,
+              .noise = VectorXd::Zero(values.size()),
               .between = values,
-              .course = Course(simulated_.time_s, simulated->values)};
+              .course = Course(simulated_.time_s, simulated->values),
+              .smooth = without_noise(simulated_.time_s, simulated->values)};
     for (Index k = 0; k < values.size(); ++k) {
       const double time_s = out_.time_s[static_cast<std::size_t>(k)];
       pair.simulated(k) = pair.course.at(time_s).first;
-      pair.between(k) = pair.course.variance_at(time_s);
+      if (pair.smooth) pair.noise(k) = pair.simulated(k) - pair.smooth->at(time_s).first;
+      pair.between(k) = (pair.smooth ? *pair.smooth : pair.course).variance_at(time_s);
     }
     const double spread = std::sqrt((values.array() - values.mean()).square().mean());
     pair.least_variance = std::max(std::pow(kLeastOfTheSpread * spread, 2), 1e-300);
@@ -227,7 +223,7 @@ class Comparison {
         std::max(pair.least_variance, std::pow(signal::estimate_noise_floor(channel.values).standard_deviation, 2));
     for (const std::vector<double>* series : {&channel.values, &simulated->values})
       pair.step_variance += std::pow(signal::estimate_noise_floor(*series).quantisation_step, 2) / 12.0;
-    if (input) drives_.push_back({channel.name, values});
+    if (input) faults_.add_drive(channel.name, values);
     pairs_.push_back(std::move(pair));
   }
 
@@ -241,13 +237,12 @@ class Comparison {
     if (!(variance(pair.simulated) > moved) || moved > kOfTheNoise * (pair.white_variance + pair.step_variance))
       return false;
     const Freedom freedom{.gain = true, .offset = true};
-    const auto fit = fit_alteration(out_.time_s, {altered(pair, freedom)}, freedom, joints_);
+    const AlteredChannel channel{.recorded = pair.recorded,
+                                 .simulated = &pair.course,
+                                 .about = 0.0,
+                                 .least_variance = pair.least_variance + pair.between.mean()};
+    const auto fit = fit_alteration(out_.time_s, {channel}, freedom, joints_);
     return fit && follows_nothing(*fit, {.gain = true});
-  }
-
-  /// Of a gain that may be 0 nothing of the simulation is left to explain anything with.
-  [[nodiscard]] static bool follows_nothing(const AlterationFit& fit, const Freedom& freedom) {
-    return freedom.gain && std::abs(fit.gain) <= kShifted * fit.gain_std;
   }
 
   void find_motion() {
@@ -256,92 +251,31 @@ class Comparison {
         if (out_.motion.empty() && pair.unit == unit && !pair.input) {
           out_.motion = pair.name;
           const bool speed = std::string(unit).ends_with("/s");
-          motion_ = speed ? pair.simulated : slope_of(pair.simulated);
+          faults_.set_motion(speed ? pair.simulated - pair.noise : shape_of(pair.simulated).slope);
         }
-  }
-
-  /// What a simulation's faults leave behind, of a channel's course on the common times. An input does not drive itself:
-  /// as recorded it has the noise that is judged.
-  [[nodiscard]] std::vector<RegressorGroup> groups_of(const std::string& channel, const VectorXd& s,
-                                                      double effective_samples) const {
-    const Index n = s.size();
-    const VectorXd one = VectorXd::Ones(n), v = slope_of(s), a = slope_of(v);
-    const double begin_s = out_.time_s.front(), length_s = out_.time_s.back() - begin_s;
-    VectorXd t(n);
-    for (Index k = 0; k < n; ++k) t(k) = 2.0 * (out_.time_s[static_cast<std::size_t>(k)] - begin_s) / length_s - 1.0;
-    std::vector<RegressorGroup> groups;
-    groups.push_back({"shift, scale, delay and clock", beside({one, s, v, t.cwiseProduct(v)})});
-    std::vector<VectorXd> regimes{one};
-    for (const Regime& regime : parts_of(v)) regimes.push_back(regime.indicator);
-    for (const Regime& level : levels_of(s)) regimes.push_back(level.indicator);
-    for (const VectorXd& saturated : saturations(motion_.size() > 0 ? motion_ : v)) regimes.push_back(saturated);
-    groups.push_back({"motion and level", beside(regimes)});
-    std::vector<VectorXd> shapes{one, a, s.cwiseProduct(s), v.cwiseProduct(v.cwiseAbs())};
-    for (const Drive& drive : drives_)
-      if (drive.name != channel) shapes.push_back(drive.values), shapes.push_back(slope_of(drive.values));
-    groups.push_back({"curvature and drive", beside(shapes)});
-    constexpr double kMostPieces = 8.0, kSamplesAPiece = 12.0;
-    const auto pieces = static_cast<Index>(std::clamp(effective_samples / kSamplesAPiece, 1.0, kMostPieces));
-    std::vector<VectorXd> windows{one};
-    for (Index k = 0; k < pieces; ++k) {
-      windows.push_back(VectorXd::Zero(n));
-      windows.back().segment(k * n / pieces, (k + 1) * n / pieces - k * n / pieces).setOnes();
-    }
-    groups.push_back({"time", beside(windows)});
-    return groups;
-  }
-
-  [[nodiscard]] std::vector<Regime> parts_of(const VectorXd& slope) const {
-    return regimes_of(motion_.size() > 0 ? motion_ : slope);
-  }
-
-  /// tanh(v/v_k) and its square for several v_k: what rubs changes its sign with the speed, at whatever speed.
-  [[nodiscard]] static std::vector<VectorXd> saturations(const VectorXd& velocity) {
-    std::vector<VectorXd> out;
-    const double fastest = velocity.cwiseAbs().maxCoeff();
-    for (const double share : {0.003, 0.01, 0.03, 0.1, 0.3}) {
-      if (!(fastest > 0.0)) break;
-      out.emplace_back((velocity.array() / (share * fastest)).tanh());
-      out.emplace_back(out.back().array().square());
-    }
-    return out;
-  }
-
-  [[nodiscard]] std::vector<RegressorGroup> partitions_of(const VectorXd& s) const {
-    constexpr Index kPieces = 8;
-    const Index n = s.size();
-    std::vector<VectorXd> motion, pieces;
-    for (const Regime& regime : parts_of(slope_of(s))) motion.push_back(regime.indicator);
-    for (Index k = 0; k < kPieces; ++k) {
-      pieces.push_back(VectorXd::Zero(n));
-      pieces.back().segment(k * n / kPieces, (k + 1) * n / kPieces - k * n / kPieces).setOnes();
-    }
-    return {{"scatter in motion and at rest", beside(motion)}, {"scatter in time", beside(pieces)}};
   }
 
   /// `between`: variance of what the simulation's samples leave open of the course.
   [[nodiscard]] Judged judge(const Pair& pair, const VectorXd& course, const VectorXd& between, Index first,
                              Index count) const {
     const VectorXd left = (pair.recorded - course).segment(first, count);
-    std::vector<RegressorGroup> groups = groups_of(pair.name, course, static_cast<double>(count));
-    std::vector<RegressorGroup> partitions = partitions_of(course);
-    for (std::vector<RegressorGroup>* list : {&groups, &partitions})
-      for (RegressorGroup& group : *list) group.columns = MatrixXd(group.columns.middleRows(first, count));
     Judged judged{.squares = left.squaredNorm() / static_cast<double>(count), .test = {}};
-    judged.test =
-        test_noise(left, groups, partitions, {pair.least_variance, pair.step_variance, between.segment(first, count)},
-                   joints_within(joints_, first, count));
+    judged.test = test_noise(
+        left, faults_.groups_of(pair.name, course, {first, count}), faults_.partitions_of(course, {first, count}),
+        {pair.least_variance, pair.step_variance, between.segment(first, count)}, joints_within(joints_, first, count));
     judged.test.noise_std = std::min(judged.test.noise_std, std::sqrt(judged.squares));
     return judged;
   }
 
   [[nodiscard]] double limit() const { return options_.significance / static_cast<double>(pairs_.size()); }
 
-  ChannelComparison compare(const Pair& pair) {
+  ChannelComparison compare(Pair& pair) {
     ChannelComparison out;
     out.name = pair.name, out.unit = pair.unit, out.input = pair.input;
     const VectorXd difference = pair.recorded - pair.simulated;
     const Judged judged = judge(pair, pair.simulated, pair.between, 0, difference.size());
+    const double white = signal::estimate_noise_floor(span_of(difference)).standard_deviation;
+    pair.noise_variance = std::max(std::pow(std::min(white, judged.test.noise_std), 2), pair.least_variance);
     out.recorded.assign(pair.recorded.begin(), pair.recorded.end());
     out.simulated.assign(pair.simulated.begin(), pair.simulated.end());
     out.rms = std::sqrt(judged.squares);
@@ -354,7 +288,7 @@ class Comparison {
     std::ranges::sort(telling, {}, &GroupTest::p_value);
     for (const GroupTest& group : telling)
       if (group.p_value * static_cast<double>(telling.size()) < limit()) out.by.push_back(group.name);
-    std::vector<Regime> regimes = parts_of(slope_of(pair.simulated));
+    std::vector<Regime> regimes = faults_.regimes_of_course(pair.simulated);
     std::ranges::move(levels_of(pair.simulated), std::back_inserter(regimes));
     out.regimes = misfit_by_regime(difference, regimes);
     out.intervals = misfit_by_time(out_.time_s, difference);
@@ -363,49 +297,27 @@ class Comparison {
     return out;
   }
 
-  /// An altered time lies between samples, and so it may where it was on one.
-  [[nodiscard]] static VectorXd between(const Pair& pair, const Freedom& freedom) {
-    if (!freedom.delay && !freedom.clock) return pair.between;
-    return VectorXd::Constant(pair.between.size(), pair.course.mean_variance());
-  }
+  [[nodiscard]] CommonTimes times() const { return {out_.time_s, joints_}; }
 
-  [[nodiscard]] static AlteredChannel altered(const Pair& pair, const Freedom& freedom, double about = 0.0) {
-    return {.recorded = pair.recorded,
-            .simulated = &pair.course,
-            .about = about,
-            .least_variance = pair.least_variance + between(pair, freedom).mean()};
-  }
-
-  [[nodiscard]] static std::vector<AlteredParameter> parameters_of(const AlterationFit& fit, const Freedom& freedom,
-                                                                   const std::string& unit) {
-    std::vector<AlteredParameter> out;
-    if (freedom.gain) out.push_back({"gain", fit.gain, fit.gain_std, "1"});
-    if (!freedom.gain && freedom.fixed_gain < 0.0) out.push_back({"gain", freedom.fixed_gain, 0.0, "1"});
-    if (freedom.offset) out.push_back({"offset", fit.offset, fit.offset_std, unit});
-    if (freedom.delay) out.push_back({"delay", fit.delay_s, fit.delay_std_s, "s"});
-    if (freedom.clock) out.push_back({"clock rate", fit.clock, fit.clock_std, "1"});
+  [[nodiscard]] std::optional<Draft> draft(const std::string& id, const std::string& where,
+                                           const std::vector<const Pair*>& pairs, const Freedom& freedom,
+                                           bool about_start = false) const {
+    std::optional<Draft> out = draft_of(times(), pairs, freedom, about_start);
+    if (out) out->told.id = id, out->told.where = where;
     return out;
   }
 
-  /// Of several channels at once: the share removed of their misfits, each in units of its noise from sample to sample.
-  [[nodiscard]] Alteration judged(std::string id, std::string where, const std::vector<const Pair*>& pairs,
-                                  const AlterationFit& fit, const Freedom& freedom) const {
-    Alteration out{.id = std::move(id), .where = std::move(where), .parameters = {}};
-    out.parameters = parameters_of(fit, freedom, pairs.front()->unit);
-    out.criterion = fit.criterion;
-    out.would_do = true;
-    double before = 0.0, after = 0.0;
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
-      const Judged left = judge(*pairs[k], fit.altered[k], between(*pairs[k], freedom), fit.first, fit.count);
-      const double noise = pairs[k]->white_variance;
-      const VectorXd raw = pairs[k]->recorded - pairs[k]->simulated;
-      before += std::max(raw.squaredNorm() / static_cast<double>(raw.size()) / noise - 1.0, 0.0);
-      after += std::max(left.squares / noise - 1.0, 0.0);
-      out.would_do = out.would_do && !pairs[k]->stands_still && left.test.p_value >= limit();
+  /// Whether what an alteration leaves of its channels is noise.
+  [[nodiscard]] bool leaves_noise(const Draft& draft) const {
+    const AlterationFit& fit = draft.fit;
+    if (std::ranges::any_of(draft.pairs, &Pair::stands_still)) return false;
+    for (std::size_t k = 0; k < draft.pairs.size(); ++k) {
+      const Pair& pair = *draft.pairs[k];
+      const Judged left =
+          judge(pair, fit.altered[k], open_variance(pair, draft.freedom, draft.smooth), fit.first, fit.count);
+      if (left.test.p_value < limit()) return false;
     }
-    out.removed_share = before > 0.0 ? std::clamp(1.0 - after / before, 0.0, 1.0) : 0.0;
-    out.would_do = out.would_do && out.removed_share > 0.0;
-    return out;
+    return true;
   }
 
   struct Way {
@@ -426,11 +338,19 @@ class Comparison {
          {"sensor_bias and sensor_lag", {.offset = true, .delay = true}},
          {"sign and sensor_bias", {.offset = true, .fixed_gain = -1.0}}},
         {{"sensor_gain, sensor_bias and sensor_lag", {.gain = true, .offset = true, .delay = true}}}};
+    // Smooth noise may hide what an alteration leaves; another that is far more likely shows that it is no noise.
+    double best = unaltered_criterion(times(), {&pair}) - kFarMoreLikely;
     for (const std::vector<Way>& level : levels) {
-      for (const Way& way : level) ask(way, pair, out);
+      std::vector<Draft> drafts;
+      for (const Way& way : level)
+        if (std::optional<Draft> asked = ask(way, pair)) drafts.push_back(std::move(*asked));
+      for (const Draft& asked : drafts) best = std::min(best, asked.told.criterion);
+      for (Draft& asked : drafts) {
+        asked.told.would_do = asked.told.criterion <= best + kFarMoreLikely && leaves_noise(asked);
+        out.alterations.push_back(std::move(asked.told));
+      }
       if (std::ranges::any_of(out.alterations, &Alteration::would_do)) break;
     }
-    keep_the_likeliest(out.alterations);
     std::ranges::sort(out.alterations, [](const Alteration& a, const Alteration& b) {
       return a.would_do != b.would_do ? a.would_do
              : a.would_do             ? a.criterion < b.criterion
@@ -438,18 +358,7 @@ class Comparison {
     });
   }
 
-  /// Smooth noise may hide what an alteration leaves; another that is far more likely shows that it is no noise.
-  static void keep_the_likeliest(std::vector<Alteration>& alterations) {
-    double best = std::numeric_limits<double>::infinity();
-    for (const Alteration& alteration : alterations) best = std::min(best, alteration.criterion);
-    for (Alteration& alteration : alterations)
-      alteration.would_do = alteration.would_do && alteration.criterion <= best + kFarMoreLikely;
-  }
-
-  void ask(const Way& way, const Pair& pair, ChannelComparison& out) const {
-    const std::vector<AlteredChannel> channels{altered(pair, way.freedom)};
-    const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, channels, way.freedom, joints_);
-    if (!fit || follows_nothing(*fit, way.freedom)) return;
+  [[nodiscard]] std::optional<Draft> ask(const Way& way, const Pair& pair) const {
     std::string id = way.id;
     if (pair.input)
       for (const auto& [sensor, input] :
@@ -457,7 +366,7 @@ class Comparison {
         if (const std::size_t at = id.find(sensor); at != std::string::npos)
           id.replace(at, std::string(sensor).size(), input);
     const std::string where = way.freedom.clock ? "clock" : (pair.input ? "input:" : "sensor:") + pair.name;
-    out.alterations.push_back(judged(id, where, {&pair}, *fit, way.freedom));
+    return draft(id, where, {&pair}, way.freedom);
   }
 
   /// One cause for all: a clock moves every channel, an input all that it drives.
@@ -479,25 +388,24 @@ class Comparison {
 
   void ask_common(const char* id, const char* where, const std::vector<const Pair*>& pairs, const Freedom& freedom,
                   bool about_start) {
-    std::vector<AlteredChannel> channels;
-    for (const Pair* pair : pairs) channels.push_back(altered(*pair, freedom, about_start ? pair->simulated(0) : 0.0));
-    const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, channels, freedom, joints_);
-    if (fit && !follows_nothing(*fit, freedom)) out_.common.push_back(judged(id, where, pairs, *fit, freedom));
+    std::optional<Draft> asked = draft(id, where, pairs, freedom, about_start);
+    if (!asked) return;
+    asked->told.would_do = asked->told.criterion < unaltered_criterion(times(), pairs) && leaves_noise(*asked);
+    out_.common.push_back(std::move(asked->told));
   }
 
   /// An offset of the input shifts all that it drives, each by a size of its own.
   void ask_input_offset(const std::vector<const Pair*>& driven) {
     Alteration all{.id = "input_bias", .where = "input", .parameters = {}, .removed_share = 1.0, .would_do = true};
     for (const Pair* pair : driven) {
-      const Freedom freedom{.offset = true};
-      const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, {altered(*pair, freedom)}, freedom, joints_);
-      if (!fit) return;
-      Alteration one = judged(all.id, all.where, {pair}, *fit, freedom);
-      one.parameters.front().name = "offset of " + pair->name;
-      all.removed_share = std::min(all.removed_share, one.removed_share);
-      all.criterion += one.criterion;
-      all.would_do = all.would_do && one.would_do && std::abs(fit->offset) > kShifted * fit->offset_std;
-      all.parameters.push_back(std::move(one.parameters.front()));
+      std::optional<Draft> one = draft(all.id, all.where, {pair}, {.offset = true});
+      if (!one) return;
+      Alteration& told = one->told;
+      told.parameters.front().name = "offset of " + pair->name;
+      all.removed_share = std::min(all.removed_share, told.removed_share);
+      all.criterion += told.criterion;
+      all.would_do = all.would_do && std::abs(one->fit.offset) > kShifted * one->fit.offset_std && leaves_noise(*one);
+      all.parameters.push_back(std::move(told.parameters.front()));
     }
     out_.common.push_back(std::move(all));
   }
@@ -555,9 +463,8 @@ class Comparison {
   std::vector<Index> present_;        ///< which of them are common times
   Joints joints_;                     ///< of the common times
   std::vector<Pair> pairs_;
-  std::vector<Drive> drives_;  ///< inputs, and what only the recording has
-  VectorXd motion_;
   TraceComparison out_;
+  FaultRegressors faults_{out_.time_s, [this](const VectorXd& values) { return shape_of(values); }};
 };
 
 }  // namespace

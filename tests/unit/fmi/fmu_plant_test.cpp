@@ -6,6 +6,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "sealwatch/model/driving_channels.hpp"
 #include "sealwatch/model/law_sizes.hpp"
 #include "sealwatch/model/simulation.hpp"
 #include "services/common/fmi/export/fmu_writer.hpp"
@@ -276,14 +277,17 @@ TEST(FmuPlant, OneThatLiesByItsInputsOrOfItsOutputsIsRefused) {
   }
 }
 
-// Sound at its start at 0.01 m, and all the way to 0.012. By inputs they are asked for only where a law is at one.
+// Sound at its start at 0.01 m, and all the way to 0.012. By inputs they are asked for only where a law is at one. The
+// spring's force changes by a hundredth of what the friction's does, over what is usual of each.
 TEST(FmuPlant, OneThatLiesWhereARunGoesIsRefusedThere) {
-  for (const char* binary : {"fmu_spring_lies_beyond2", "fmu_spring_lies_beyond_by_input2"}) {
+  for (const char* binary :
+       {"fmu_spring_lies_beyond2", "fmu_spring_lies_beyond_by_place2", "fmu_spring_lies_beyond_by_input2"}) {
     const TestFolder folder;
     TestUnit unit = spring_return(binary);
     unit.directional = true;
     const std::string fmu = folder.build(unit);
-    const auto plant = load_plant(written(folder, plant_text(binary)));
+    const std::string text = with(plant_text(binary), "start: position, size: 0.02", "start: position, size: 0.002");
+    const auto plant = load_plant(written(folder, text));
     ASSERT_TRUE(plant) << plant.error().front().describe();
     AssetConfig asset = nominal_asset(binary);
     asset.physics = {law_at("driver", "driver_dead_time", binary)};
@@ -296,6 +300,24 @@ TEST(FmuPlant, OneThatLiesWhereARunGoesIsRefusedThere) {
                 AllOf(HasSubstr("model.fmu"), HasSubstr("those of der(v) at 0."),
                       HasSubstr("gives directional derivatives that are not the derivatives of its own values")));
   }
+}
+
+// As of a built-in plant's part: a gross difference may be the work of that drive, and no law is claimed then.
+TEST(FmuPlant, WhatDrivesItUnseenIsKnownOfATextAndOfAUnit) {
+  const TestFolder folder;
+  const std::string fmu = folder.build(spring_return("fmu_spring_return2"));
+  constexpr const char* kUnseen = "not_recorded: {drive: the pull of the crane, record: its force}\n";
+  for (const auto& [name, text] : {std::pair<std::string, std::string>{"pulled_text", text_plant("pulled_text")},
+                                   {"pulled_unit", plant_text("pulled_unit")}}) {
+    const auto plant = load_plant(written(folder, text + kUnseen));
+    ASSERT_TRUE(plant) << plant.error().front().describe();
+    const PlantPart part = simulated_part(nominal_asset(name), strokes());
+    EXPECT_EQ(part.not_recorded, "the pull of the crane") << name;
+    EXPECT_EQ(part.record, "its force") << name;
+    EXPECT_TRUE(part.inputs.empty());
+  }
+  EXPECT_THAT(fault(folder, text_plant("pulled") + "not_recorded: {drive: the pull of the crane}\n"),
+              HasSubstr("key not_recorded.record: must be given"));
 }
 
 /// Differences across a corner where the input starts are the mean of both sides.

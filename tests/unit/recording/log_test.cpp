@@ -157,6 +157,16 @@ TEST(HeaderCell, AnIndexInBracketsIsNoUnit) {
   EXPECT_EQ(split_header_cell("s[m]").unit, "m");
 }
 
+// As old instruments write it, and some programs on a Mac.
+TEST_F(ForeignLog, RowsMayEndInACarriageReturnAlone) {
+  const auto map = map_of({{"time", {.column = "t", .unit = "s"}}, {"position", {.column = "x", .unit = "mm"}}});
+  const Recording log = read("made by hand\rt;x\r0;1\r0,5;2\r1;4\r", map);
+  EXPECT_THAT(log.samples.time_s, ElementsAre(0.0, 0.5, 1.0));
+  const Recording own = read("time[s],position[mm]\r0,1\r1,2\r2,4\r", {}, "own.csv");
+  EXPECT_THAT(own.samples.time_s, ElementsAre(0.0, 1.0, 2.0));
+  EXPECT_DOUBLE_EQ(own.samples.find("position")->values[1], 0.002);
+}
+
 TEST_F(ForeignLog, BlanksOfAnyLength) {
   const ChannelMap map = map_of({{"time", {.column = "t", .unit = "s"}},
                                  {"pressure_a", {.column = "P1", .unit = "barg"}},

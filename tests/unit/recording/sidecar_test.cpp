@@ -50,6 +50,8 @@ TEST(SidecarText, ErrorsNameLineAndKey) {
   EXPECT_THAT(error_of("noise_std: {position: fine}\n"),
               HasSubstr("line 1, key noise_std.position: 'fine': must be a positive number"));
   EXPECT_THAT(error_of("noise_std: {position: 0}\n"), HasSubstr("must be a positive number"));
+  EXPECT_THAT(error_of("noise_std: {position: 1e308}\n"), HasSubstr("must be a positive number, from 1e-100 to 1e100"));
+  EXPECT_THAT(error_of("noise_std: {position: 1e-320}\n"), HasSubstr("must be a positive number"));
   EXPECT_THAT(error_of("noise_std: {position: .inf}\n"), HasSubstr("must be a positive number"));
   EXPECT_THAT(error_of("noise_std: {position: .nan}\n"), HasSubstr("must be a positive number"));
   EXPECT_THAT(error_of("noise_std: [1, 2]\n"), HasSubstr("key noise_std: must be a mapping"));

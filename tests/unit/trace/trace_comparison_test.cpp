@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ctime>
 #include <filesystem>
 #include <functional>
 #include <random>
@@ -117,6 +118,61 @@ TEST(Trace, ColouredNoiseIsNoDifference) {
       alarms += compare(noisy(simulated, 0.01, rho, seed + 1000), simulated).consistent ? 0 : 1;
   std::printf("false alarms: %d of %d\n", alarms, 4 * kSeeds);
   EXPECT_LE(alarms, 8) << "1 % is promised; 8 of 240 would be by chance in one of a thousand runs";
+}
+
+/// White noise in both, as of two recordings: 0.1 mm, and 40 mbar.
+TraceComparison both_noisy(const TimeSeries& recorded, const TimeSeries& simulated, unsigned seed) {
+  return compare(noisy(recorded, 0.002, 0.0, seed), noisy(simulated, 0.002, 0.0, seed + 500));
+}
+
+// The simulation's own noise is in the difference, and so it may not be in what the difference is held against.
+TEST(Trace, NoiseInBothIsNoDifference) {
+  constexpr unsigned kSeeds = 60;
+  int alarms = 0;
+  for (unsigned seed = 0; seed < kSeeds; ++seed) alarms += both_noisy(stroke(), stroke(), seed).consistent ? 0 : 1;
+  std::printf("false alarms: %d of %u\n", alarms, kSeeds);
+  EXPECT_LE(alarms, 4) << "1 % is promised; 4 of 60 would be by chance in one of three hundred runs";
+}
+
+// A tenth of the noise, seven standard errors. A delay by half a sample, which lessens white noise, is none.
+TEST(Trace, ASmallAlterationUnderNoiseInBothIsTold) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const TimeSeries shifted = changed(stroke(), [](double x, double) { return x + 2e-5; });
+    const TraceComparison offset = both_noisy(shifted, stroke(), seed);
+    ASSERT_THAT(offset.answer, SizeIs(1)) << seed;
+    EXPECT_EQ(offset.answer[0].id, "sensor_bias");
+    EXPECT_NEAR(offset.answer[0].parameters[0].value, 2e-5, 4.0 * offset.answer[0].parameters[0].std_error);
+    EXPECT_GT(offset.answer[0].removed_share, 0.2);
+    const TimeSeries longer = changed(stroke(), [](double x, double) { return 1.001 * x; });
+    const TraceComparison gain = both_noisy(longer, stroke(), seed);
+    ASSERT_FALSE(gain.answer.empty()) << seed;
+    EXPECT_EQ(best(gain).id, "sensor_gain") << seed;
+    TimeSeries late = stroke();
+    for (double& time : late.time_s) time += 0.013;
+    late.channels.resize(1);
+    TimeSeries beside = stroke();
+    beside.channels.resize(1);
+    const TraceComparison delayed = both_noisy(late, beside, seed);
+    ASSERT_FALSE(delayed.answer.empty()) << seed;
+    EXPECT_EQ(best(delayed).id, "sensor_lag");
+    EXPECT_NEAR(best(delayed).parameters[0].value, 0.013, 4.0 * best(delayed).parameters[0].std_error);
+    EXPECT_LT(best(delayed).parameters[0].std_error, 0.003);
+  }
+}
+
+// Slopes of slow courses are taken over wide windows, and the wider the more rows there are.
+TEST(Trace, WorkGrowsAsTheRowsDo) {
+  const auto cpu_s = [](double interval_s) {
+    const TimeSeries simulated = stroke(30.0, interval_s);
+    const TimeSeries recorded = noisy(changed(simulated, [](double x, double) { return 1.02 * x; }), 0.002, 0.5, 3);
+    const std::clock_t begin = std::clock();
+    EXPECT_FALSE(compare(recorded, simulated).consistent);
+    return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  };
+  constexpr double kTimesTheRows = 16.0, kCaches = 1.5;
+  const double few = cpu_s(0.01), many = cpu_s(0.01 / kTimesTheRows);
+  std::printf("3000 rows: %.3f s, 48000 rows: %.3f s\n", few, many);
+  EXPECT_LT(many, kCaches * kTimesTheRows * few);
 }
 
 TEST(Trace, AGainIsFoundWithItsSizeAndError) {

@@ -44,7 +44,9 @@ std::size_t place_of(std::size_t recording, Places places) { return places.empty
 // Name in the problem of a shared unknown of another fit: what belongs to one recording ends in that one's number.
 std::string name_among(const PemProblem& problem, Places places, const PemProblem& there, const Unknown& unknown) {
   if (places.empty() || unknown.group < 0) return unknown.name;
-  const auto is_its = [&](std::size_t place) { return there.recordings[place].group == unknown.group; };
+  const auto is_its = [&](std::size_t place) {
+    return place < there.recordings.size() && there.recordings[place].group == unknown.group;
+  };
   const auto place = std::ranges::find_if(places, is_its);
   if (place == places.end()) return {};
   const int group = problem.recordings[static_cast<std::size_t>(place - places.begin())].group;
@@ -104,7 +106,8 @@ std::vector<KeptDerivatives> derivatives_from(const FittedModel& start, Places p
   std::vector<KeptDerivatives> kept;
   for (std::size_t k = 0; k < problem.recordings.size(); ++k) {
     const std::size_t there = place_of(k, places);
-    const bool same = (!places.empty() || start.problem.recordings.size() == problem.recordings.size()) &&
+    const bool same = there < start.problem.recordings.size() &&
+                      (!places.empty() || start.problem.recordings.size() == problem.recordings.size()) &&
                       same_noise(start.problem.recordings[there], problem.recordings[k]);
     if (!same || start.optimum.at_optimum[there].jacobian.size() == 0) return {};
     kept.push_back({start.optimum.at_optimum[there].jacobian(Eigen::all, columns), {}});

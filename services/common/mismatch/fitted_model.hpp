@@ -71,7 +71,7 @@ inline constexpr int kSearchIterations = 30;
                                                    const FittedModel& start, int iterations, const SearchBound& bound);
 
 /// Fits the model anew to some of its recordings (or windows), from where it ended. `places`: theirs among its own, one
-/// for each of `data`.
+/// for each of `data`; beyond these for one that it was not fitted to.
 [[nodiscard]] Result<FittedModel> fit_to_some(const FittedModel& model, const Data& data,
                                               std::span<const std::size_t> places, int threads,
                                               int iterations = kSearchIterations);

@@ -109,6 +109,13 @@ Data some_of(Data data, const std::vector<std::size_t>& places) {
   return data;
 }
 
+// Of all recordings their places among some, or none of these.
+std::vector<std::size_t> among(const std::vector<std::size_t>& places, const Data& data) {
+  std::vector<std::size_t> back(data.samples.size(), places.size());
+  for (std::size_t k = 0; k < places.size(); ++k) back[places[k]] = k;
+  return back;
+}
+
 // Fitted to the recordings while it is held, as loosely as leaves it near; nothing where even held tightly it comes no
 // nearer: too little of its state is measured. What the free run's fit bent its parameters to is no start to judge by.
 // Windows set out from what was measured, and are held loosely by that: only where they are far off, and near at once
@@ -153,7 +160,7 @@ HeldStart start_from_held(const FittedModel& baseline, const Data& data, const E
   }
   start.was_cut = until.was_met();
   if (found.effects.empty()) return start;
-  Result<FittedModel> free = fit_model(found.model->asset, data, &baseline, options.threads);
+  Result<FittedModel> free = fit_to_some(*found.model, data, among(places, data), options.threads);
   if (!free) return start;
   if (share_explained(misfit_of(baseline), misfit_of(*free)) >= kExplainedAtLeast)
     start.trial = Trial{.effects = std::move(found.effects),

@@ -19,7 +19,7 @@ namespace {
 constexpr double kFarOff = 0.1;      // of the spread of a channel
 constexpr double kNoise = 1.1;       // times the noise's variance: its own size is known to a tenth
 constexpr double kTimeShare = 0.25;  // of the time limit: a start, and no more
-constexpr int kIterations = 8;       // to see whether simulations come nearer where they are held
+constexpr int kIterations = 8;       // to see whether simulations come nearer where they are held, or follow free
 constexpr double kEnoughRows = 8000.0;
 // Within so many distances between samples: what adds up slowly shows; and, where that is still far off, noise is averaged
 // and little drifts.
@@ -39,18 +39,22 @@ bool acts_in_the_plant(const Law& law) { return !is_sensor(law.kind) && law.kind
 double misfit_of(const FittedModel& model) { return model.misfit / model.residuals; }
 
 // Nearly in proportion, the laws that promise most are those that bring most: few refits do.
-// What explains less than half of what is left is asked in free runs.
-bool add_best(Trial& found, const Data& held, const ExplainOptions& options) {
+// What explains less than half of what is left is asked in free runs; what `runs_free` cannot follow (friction that falls
+// steeply with speed, and chatters) is no start.
+bool add_best(Trial& found, const Data& held, const ExplainOptions& options,
+              const std::function<bool(const Trial&)>& runs_free) {
   constexpr std::size_t kRefits = 4;
   const auto asked = screen(*found.model, held, {.seed = options.seed, .threads = options.threads});
   if (!asked) return false;
   std::vector<std::vector<LawStart>> starts;
   for (LawStart& start : ranked_laws(*asked, asked->candidates.size(), true))
     if (starts.size() < kRefits && acts_in_the_plant(*start.effect.law)) starts.push_back({std::move(start)});
-  const std::vector<Trial> trials = refit(found, starts, held, options.threads);
-  if (trials.empty() || share_explained(misfit_of(*found.model), misfit_of(*trials.front().model)) < kExplainedAtLeast)
-    return false;
-  found = with_derivatives(trials.front(), held, options.threads);
+  const std::vector<Trial> trials = refit(found, starts, held, options.threads, {.first_round_only = true});
+  const auto best = std::ranges::find_if(trials, [&](const Trial& trial) {
+    return share_explained(misfit_of(*found.model), misfit_of(*trial.model)) >= kExplainedAtLeast && runs_free(trial);
+  });
+  if (best == trials.end()) return false;
+  found = with_derivatives(*best, held, options.threads);
   return true;
 }
 
@@ -155,12 +159,16 @@ HeldStart start_from_held(const FittedModel& baseline, const Data& data, const E
   if (!held) return start;
   Trial found =
       polished({{}, std::make_shared<const FittedModel>(std::move(held->model))}, held->data, options.threads);
+  const auto free_run_from = [&](const Trial& trial, int iterations) {
+    return fit_to_some(*trial.model, data, among(places, data), options.threads, iterations);
+  };
+  const auto runs_free = [&](const Trial& trial) { return free_run_from(trial, kIterations).has_value(); };
   while (excess(*found.model) > kNoise && static_cast<int>(found.effects.size()) < options.maximum_laws &&
-         add_best(found, held->data, options)) {
+         add_best(found, held->data, options, runs_free)) {
   }
   start.was_cut = until.was_met();
   if (found.effects.empty()) return start;
-  Result<FittedModel> free = fit_to_some(*found.model, data, among(places, data), options.threads);
+  Result<FittedModel> free = free_run_from(found, kSearchIterations);
   if (!free) return start;
   if (share_explained(misfit_of(baseline), misfit_of(*free)) >= kExplainedAtLeast)
     start.trial = Trial{.effects = std::move(found.effects),

@@ -171,7 +171,8 @@ class Refits {
   std::vector<Trial> run(const std::vector<std::vector<LawStart>>& laws) {
     std::vector<Refit> refits = first_round(laws);
     if (refits.empty()) return {};
-    const std::size_t count = std::min(refits.size(), kGoOn), ahead = known_.empty() ? count : std::min(count, kAhead);
+    const std::size_t count = options_.first_round_only ? 0 : std::min(refits.size(), kGoOn),
+                      ahead = known_.empty() ? count : std::min(count, kAhead);
     best_ = refits.front().model;
     go_on(std::span(refits).first(ahead));
     go_on(std::span(refits).subspan(ahead, count - ahead));

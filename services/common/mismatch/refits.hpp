@@ -38,6 +38,8 @@ struct RefitOptions {
   /// A refit that ends worse than what it set out from starts again with a tenth of its strength (for alternatives; a
   /// search takes the law that is easier to find).
   bool again_smaller = false;
+  /// What a first round comes to is enough.
+  bool first_round_only = false;
   /// Misfit of an explanation that is known: what cannot come near it is cut too.
   double to_beat = std::numeric_limits<double>::infinity();
 };

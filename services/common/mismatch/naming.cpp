@@ -11,7 +11,6 @@
 #include "services/common/core/in_parallel.hpp"
 #include "services/common/mismatch/candidates.hpp"
 #include "services/common/mismatch/datasheet.hpp"
-#include "services/common/mismatch/form_error.hpp"
 #include "services/common/mismatch/one_shape.hpp"
 #include "services/common/mismatch/other_shapes.hpp"
 #include "services/common/mismatch/own_gains.hpp"
@@ -344,9 +343,7 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
     if (level == 0) naming.baseline_with_sensors = sensors.model();
     return naming.sensors_are_inexact;
   };
-  if (leaves_its_form(naming) &&
-      more_than_form(*naming.best.model, naming.best.effects.front(), ranked_laws(asked, kSingles), data, options)
-          .empty()) {
+  if (leaves_its_form(naming)) {
     static_cast<void>(are_inexact());
     return trials;
   }

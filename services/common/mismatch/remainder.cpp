@@ -17,7 +17,8 @@ namespace sealwatch::mismatch {
 namespace {
 
 constexpr std::size_t kAnywhere = 3;
-constexpr double kForm = 2e-2;  // of the largest law's gain
+constexpr double kForm = 2e-2;         // of the largest law's gain
+constexpr double kNothingElse = 2e-3;  // of what the first law took: no other is tried
 
 double gain_of(const FoundEffect& effect) { return -effect.delta_bic; }
 
@@ -75,7 +76,7 @@ double share_left(const FittedModel& without, const FittedModel& with, double pr
 }
 
 bool leaves_its_form_at_most(const FittedModel& without, const FittedModel& with, double promised) {
-  return excess(with) <= kGross && with.misfit < without.misfit && share_left(without, with, promised) < kForm;
+  return excess(with) <= kGross && with.misfit < without.misfit && share_left(without, with, promised) < kNothingElse;
 }
 
 std::string left_beside(const LawAt& law, double share) { return may_be_the_form(law, share); }

@@ -431,6 +431,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
   };
   if (!freed.empty()) {
     Result<Naming> beside = beside_values(naming, freed, from, data, options, progress);
+    if (!beside && !from.effects.empty()) return fail(beside.error());  // what was found stays that
     if (!beside) naming.not_asked.emplace_back("what was found beside a value of the asset file");
     if (!beside) return naming;
     beside->behind_laws = std::min(beside->behind_laws, criterion_behind(*beside->best.model, *baseline));

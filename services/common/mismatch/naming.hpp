@@ -54,7 +54,8 @@ struct Naming {
 /// The search as it began: with no value free that the asset file fixes.
 [[nodiscard]] const Naming& as_it_began(const Naming& naming);
 
-/// An Error when nothing can be looked at: the baseline cannot be linearised. A law whose model cannot be is not taken,
+/// An Error when nothing can be looked at: the baseline cannot be linearised, or what is to begin with cannot be, beside
+/// free values. A law whose model cannot be is not taken,
 /// `remarks` says so, and the search ends with what it had. `from`: laws and free values to begin with, refitted to the
 /// same data; laws that are not needed there are taken out first. `known`: the baseline's screening, where it is known.
 [[nodiscard]] Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const Data& data,

@@ -7,6 +7,7 @@
 #include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/explain_input.hpp"
 #include "services/common/mismatch/other_shapes.hpp"
+#include "services/common/mismatch/tolerance.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "tests/unit/mismatch/simulated_test.hpp"
 
@@ -126,6 +127,25 @@ TEST(TimeLimit, ALawThatWasFittedIsKept) {
   EXPECT_THAT(naming.best.effects, SizeIs(1));
   EXPECT_THAT(naming.not_asked, SizeIs(1));
   EXPECT_THAT(naming.remarks, IsEmpty());
+}
+
+// It is asked again beside a value of the asset file, and time is up: that is no search which found nothing.
+TEST(TimeLimit, WhatWasFoundBesideAValueIsNotLost) {
+  const std::vector<Recording> recordings = two_tests();
+  Data data = data_of(recordings);
+  Deadline deadline;
+  data.deadline = &deadline;
+  data.fixed = {{.name = "A_C", .value = actuator().parameters.at("A_C").value, .standard_deviation = 1e-5}};
+  const auto fitted = [&](const AssetConfig& asset) {
+    return std::make_shared<const FittedModel>(fit_model(asset, data, nullptr, 2).value());
+  };
+  const auto baseline = fitted(actuator());
+  AssetConfig leaking = with_free_value(with_a_leak(), "A_C");
+  leaking.physics.front().parameters.at("G").estimate = true;
+  const Trial found{{{find_law("external_leakage", {"G"}).value(), "chamber_a"}}, fitted(leaking)};
+  const Screening known = screen(*baseline, data, {}).value();
+  deadline.set_in(-1.0);
+  EXPECT_FALSE(name_effects(baseline, data, {}, {}, found, &known));
 }
 
 TEST(TimeLimit, ASimulationThatRunsIsEnded) {

@@ -146,7 +146,7 @@ static void draw_sensor_fault(Set& set, Random& random) {
       e.strength = random.log_uniform(0.01, 0.3);
       break;
     default:  // a zero that moves during the test, and settles
-      e.kind = {Form::drift, elements[channel], "sensor_bias", "", "", c.unit, c.noise, 60, 0, 0, 0, 0, 0};
+      e.kind = {Form::drift, elements[channel], "sensor_drift", "", "D", c.unit, c.noise, 60, 0, 0, 0, 0, 0};
       e.strength = random.sign() * c.noise * random.log_uniform(2.0, 60.0);
       e.a = random.log_uniform(4.0, 15.0);
   }

@@ -59,6 +59,8 @@ SEALWATCH_ENUM(SiteKind, voltage_command, winding_voltage, shaft_torque, pump_sl
 }
 /// Laws of the recorded input and of the recording's clock, which the simulation applies to the recording itself.
 [[nodiscard]] constexpr bool is_of_recording(SiteKind kind) { return kind > SiteKind::sensor_saturation; }
+/// Either: it takes no part in the physics.
+[[nodiscard]] constexpr bool is_of_measurement(SiteKind kind) { return is_sensor(kind) || is_of_recording(kind); }
 
 /// What a command's voltage feeds, where that is known: dead times of a bridge are asked at motors, the voltage below
 /// which a pump delivers nothing at pumps. A site or law of `anything` goes with all.

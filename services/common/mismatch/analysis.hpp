@@ -136,7 +136,7 @@ class Analysis {
   [[nodiscard]] bool windowed() const { return window_s_ > 0.0; }
   [[nodiscard]] HeldOut held_out() const { return {fit_, holdout_, window_s_, options_, predictions_}; }
   [[nodiscard]] Data prepared(const Data& data) const { return in_windows(data, window_s_); }
-  [[nodiscard]] ToProve to_prove() const { return {held_out(), naming_, baseline_}; }
+  [[nodiscard]] ToProve to_prove() { return {held_out(), naming_, baseline_, unknown_sensors()}; }
 
   // What is claimed and told (analysis_findings.cpp).
 

@@ -52,7 +52,7 @@ bool Analysis::averages_do() {
 void Analysis::look_with_held_inputs() {
   const auto before = std::tuple(fit_, holdout_, baseline_, own_, naming_, best_, why_none_, asked_values_);
   std::optional<Trial> from;
-  if (!own_ && !best_.effects.empty()) {
+  if (!own_ && (!best_.effects.empty() || !naming_.freed.empty())) {
     Result<FittedModel> model = fit_model(best_.model->asset, as_held_->fit, best_.model.get(), options_.threads);
     if (model) from = Trial{best_.effects, std::make_shared<const FittedModel>(std::move(*model))};
   }
@@ -218,6 +218,7 @@ void Analysis::look_at_what_is_left() {
   const bool was_cut = !naming_.not_asked.empty() && !naming_.best.effects.empty();
   if (was_cut) {
     time_.allow(kSettledBy);
+    naming_.best = polished(naming_.best, prepared(fit_), options_.threads);
     if (!naming_.settled) settle(naming_, prepared(fit_), options_);
     time_.allow_what_is_needed();  // without it what was found could not be told
     auto last = screen(*naming_.best.model, prepared(fit_), {.seed = options_.seed, .threads = options_.threads});

@@ -16,11 +16,9 @@
 namespace sealwatch::mismatch {
 namespace {
 
-// In a gross misfit a value takes up some of whatever is missing: beside laws it counts where it takes half of what they
-// leave.
-bool takes_up_little(const FittedModel& laws, const FittedModel& with_value) {
-  return excess(with_value) > kGross &&
-         share_explained(laws.misfit / laws.residuals, with_value.misfit / with_value.residuals) < kExplainedAtLeast;
+// In a gross misfit a value takes up some of whatever is missing.
+bool is_in_place_of_what_is_missing(const FittedModel& laws, const FittedModel& with_value) {
+  return excess(with_value) > kGross && takes_up_little(laws, with_value);
 }
 
 }  // namespace
@@ -58,7 +56,7 @@ void Analysis::ask_the_datasheet() {
     const bool borne_out = bears_out(*wrong, *best_.model, compared),
                beside = borne_out && take_beside_values(*wrong, instead_of, compared);
     if (borne_out && !beside && wrong->behind < -kCannotTell &&
-        (wrong->with.effects.empty() || !takes_up_little(*best_.model, *wrong->with.model)))
+        (wrong->with.effects.empty() || !is_in_place_of_what_is_missing(*best_.model, *wrong->with.model)))
       blame_the_asset_file(*wrong, joined(instead_of, " and "), compared);
     time_.allow(kSearchShare);
   }
@@ -151,7 +149,7 @@ bool Analysis::is_among(const Effect& effect, const std::vector<Effect>& effects
 
 bool Analysis::take_beside_values(const WrongDatasheet& wrong, const std::vector<std::string>& laws,
                                   const std::vector<RecordingComparison>& compared) {
-  if (wrong.with.effects.empty() || takes_up_little(*best_.model, *wrong.with.model)) return false;
+  if (wrong.with.effects.empty() || is_in_place_of_what_is_missing(*best_.model, *wrong.with.model)) return false;
   AssetConfig asset = baseline_->asset;
   for (const AssetValue& value : wrong.values.front()) asset = with_free_value(std::move(asset), value.name);
   Result<FittedModel> alone = fit_model(asset, prepared(fit_), wrong.with.model.get(), options_.threads);

@@ -51,7 +51,8 @@ std::vector<std::vector<LawStart>> twins_of(const Trial& best, std::size_t slot,
   });
   if (twins.empty()) return {};
   for (Candidate& twin : twins) twin.grid = {found};
-  const Result<Screening> linear = screen_laws(fewer, twins, data, {.seed = options.seed, .threads = options.threads});
+  const Result<Screening> linear =
+      screen_laws(fewer, twins, data, {.draws = 1, .seed = options.seed, .threads = options.threads});
   const std::vector<std::size_t> strengths = strengths_of(*effect.law);
   std::vector<std::vector<LawStart>> starts;
   for (std::size_t k = 0; k < twins.size(); ++k) {
@@ -91,7 +92,8 @@ std::vector<Trial> alternatives_of(const Naming& naming, const Trial& best, std:
       found, [&](const Trial& trial) { return trial.effects.back().law->id != best.effects[slot].law->id; });
   if (!others.empty() || !asked) {
     const Result<Screening> screening =
-        others.empty() ? naming.first : screen(*fewer->model, data, {.seed = options.seed, .threads = options.threads});
+        others.empty() ? naming.first
+                       : screen(*fewer->model, data, {.draws = 1, .seed = options.seed, .threads = options.threads});
     if (!screening) return found;
     for (LawStart& start : ranked_laws(*screening, kAlternatives))
       if (!same(start.effect, best.effects[slot])) starts.push_back({std::move(start)});
@@ -269,7 +271,7 @@ std::vector<double> parameters_in(const Effect& effect, const AssetConfig& asset
   return parameters;
 }
 
-std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& best, const Data& data,
+std::vector<FoundEffect> describe_effects(Naming& naming, const Trial& best, const Data& data,
                                           const ExplainOptions& options, const CarryOver* carry_over) {
   const std::vector<double> errors = standard_errors(*best.model);
   const PlantDescription& plant = best.model->problem.recordings.front().simulation->plant();
@@ -290,7 +292,8 @@ std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& bes
   std::vector<FoundEffect> effects;
   for (std::size_t slot = best.effects.size(); slot-- > 0;) {
     effects.insert(effects.begin(), describe_effect(slot));
-    if (best.effects.size() > 1 && excess(*best.model) <= kGross && could_sit_anywhere(effects.front())) return effects;
+    const bool is_last = slot + 1 == best.effects.size();  // a remainder, that is
+    if (is_last && slot > 0 && excess(*best.model) <= kGross && could_sit_anywhere(effects.front())) return effects;
   }
   std::ranges::stable_sort(effects, std::greater<>(), &FoundEffect::probability);
   return effects;

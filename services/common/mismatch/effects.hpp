@@ -15,7 +15,7 @@ namespace sealwatch::mismatch {
 /// Effects of the best model, most probable first. For each its alternatives are refitted in its place; with
 /// `carry_over` the nearest of them are told apart only where they predict other recordings worse. The law that was
 /// added last comes alone where it could sit anywhere, as the others are then asked without it.
-[[nodiscard]] std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& best, const Data& data,
+[[nodiscard]] std::vector<FoundEffect> describe_effects(Naming& naming, const Trial& best, const Data& data,
                                                         const ExplainOptions& options,
                                                         const CarryOver* carry_over = nullptr);
 

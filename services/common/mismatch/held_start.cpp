@@ -44,7 +44,7 @@ double misfit_of(const FittedModel& model) { return model.misfit / model.residua
 bool add_best(Trial& found, const Data& held, const ExplainOptions& options,
               const std::function<bool(const Trial&)>& runs_free) {
   constexpr std::size_t kRefits = 4;
-  const auto asked = screen(*found.model, held, {.seed = options.seed, .threads = options.threads});
+  const auto asked = screen(*found.model, held, {.draws = 1, .seed = options.seed, .threads = options.threads});
   if (!asked) return false;
   std::vector<std::vector<LawStart>> starts;
   for (LawStart& start : ranked_laws(*asked, asked->candidates.size(), true))

@@ -71,26 +71,33 @@ SearchBound worth_dropping_to(const Naming& naming) {
   return {.cost = 0.5 * phi * (criterion(*naming.best.model, phi) + worth_keeping(naming)), .optimism = kOptimistic};
 }
 
-// Laws whose removal does not cost what another law must bring are taken out again.
+// The best without each of its laws in turn, where that can be simulated and is worth its search.
+std::vector<Trial> each_with_one_less(const Naming& naming, const Data& data, int threads) {
+  const Trial& best = naming.best;
+  const SearchBound bound = worth_dropping_to(naming);
+  std::vector<Trial> all = in_parallel<Trial>(best.effects.size(), threads, [&](std::size_t out) {
+    Trial fewer{.effects = best.effects, .model = nullptr};
+    fewer.effects.erase(fewer.effects.begin() + static_cast<std::ptrdiff_t>(out));
+    AssetConfig asset = best.model->asset;
+    asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(best.effects.size() - out));
+    Result<FittedModel> model = fit_model(asset, data, best.model.get(), 1, kSearchIterations, bound);
+    if (model) fewer.model = std::make_shared<const FittedModel>(std::move(*model));
+    return fewer;
+  });
+  std::erase_if(all, [](const Trial& fewer) { return fewer.model == nullptr; });
+  return all;
+}
+
+// Laws whose removal does not cost what another law must bring are taken out again, the one that costs least first.
 void drop_what_is_not_needed(Naming& naming, const Data& data, int threads) {
-  for (bool dropped = true; dropped && naming.best.effects.size() > 1;) {
-    dropped = false;
-    for (std::size_t out = 0; out < naming.best.effects.size() && !dropped; ++out) {
-      Trial fewer{.effects = naming.best.effects, .model = nullptr};
-      fewer.effects.erase(fewer.effects.begin() + static_cast<std::ptrdiff_t>(out));
-      AssetConfig asset = naming.best.model->asset;
-      asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(naming.best.effects.size() - out));
-      Result<FittedModel> model =
-          fit_model(asset, data, naming.best.model.get(), threads, kSearchIterations, worth_dropping_to(naming));
-      if (!model) continue;
-      fewer.model = std::make_shared<const FittedModel>(std::move(*model));
-      naming.trials.push_back(fewer);
-      const double phi = dispersion(*naming.best.model);
-      if (criterion(*fewer.model, phi) < criterion(*naming.best.model, phi) + worth_keeping(naming)) {
-        naming.best = fewer;
-        dropped = true;
-      }
-    }
+  while (naming.best.effects.size() > 1) {
+    const std::vector<Trial> fewer = each_with_one_less(naming, data, threads);
+    naming.trials.insert(naming.trials.end(), fewer.begin(), fewer.end());
+    const double phi = dispersion(*naming.best.model);
+    const Trial* least = best_of(fewer, phi);
+    if (least == nullptr || criterion(*least->model, phi) >= criterion(*naming.best.model, phi) + worth_keeping(naming))
+      break;
+    naming.best = with_derivatives(*least, data, threads);
   }
   const double phi = dispersion(*naming.best.model);
   if (criterion(*naming.baseline, phi) < criterion(*naming.best.model, phi) + worth_keeping(naming))
@@ -112,7 +119,7 @@ bool promising(const Screening& screening, const FittedModel& model) {
 // Closed forms that promise what another law must bring, as starts of refits from the trial.
 std::vector<std::vector<LawStart>> closed_forms_for(const Trial& from, const Data& data,
                                                     const ExplainOptions& options) {
-  const ScreeningOptions forms{.seed = options.seed, .threads = options.threads, .closed_forms = true};
+  const ScreeningOptions forms{.draws = 1, .seed = options.seed, .threads = options.threads, .closed_forms = true};
   std::vector<std::vector<LawStart>> starts;
   const auto screening = screen(*from.model, data, forms);
   if (!screening || !promising(*screening, *from.model)) return starts;
@@ -287,16 +294,6 @@ class DifferingTests {
   std::vector<Trial> trials_;
 };
 
-// A sensor's gain or offset that is no further off than its tolerance lets it be is no fault.
-bool is_within_tolerance(const Effect& effect, const Trial& trial, const std::vector<KnownValue>& sensors) {
-  const std::string name = tolerated_name(effect);
-  const auto known = std::ranges::find(sensors, name, &KnownValue::name);
-  if (name.empty() || known == sensors.end()) return false;
-  const std::string strength = physics_parameter_name(effect.element, effect.law->id,
-                                                      effect.law->parameters[strengths_of(*effect.law).front()].name);
-  return std::abs(*estimate_of(*trial.model, strength)) <= kWithinTolerance * known->standard_deviation;
-}
-
 // The laws found so far with the plant's parameters where the asset file has them. In a gross misfit parameters bend to
 // what is missing: their fit has several minima, from some of which no search finds the law.
 std::optional<Trial> with_given_values(const Trial& found, const Data& data) {
@@ -308,6 +305,20 @@ std::optional<Trial> with_given_values(const Trial& found, const Data& data) {
   Result<FittedModel> model = fit_model(asset, data, &nowhere, 1, 0);
   if (!model) return std::nullopt;
   return Trial{found.effects, std::make_shared<const FittedModel>(std::move(*model))};
+}
+
+// Without those that add only a law of a sensor or of the recorded input, which takes up some of whatever is missing, and
+// that takes less than half of what is left; all, where no other is worth another law.
+std::vector<Trial> causes_among(const std::vector<Trial>& trials, const Trial& from, double phi) {
+  std::vector<Trial> causes = trials;
+  std::erase_if(causes, [&](const Trial& trial) {
+    const bool measured =
+        trial.effects.size() == from.effects.size() + 1 && is_of_measurement(trial.effects.back().law->kind);
+    return measured && takes_up_little(*from.model, *trial.model);
+  });
+  const double worth = criterion(*from.model, phi) - kWorthAnother;
+  const bool any = std::ranges::any_of(causes, [&](const Trial& one) { return criterion(*one.model, phi) < worth; });
+  return any ? causes : trials;
 }
 
 // Refits with another law: first the single laws that promise most, in a gross misfit all and from second starts too.
@@ -475,6 +486,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
       if (naming.sensors_are_inexact) return naming;
     }
     const double phi = smallest_dispersion(trials, *naming.best.model);
+    trials = causes_among(trials, naming.best, phi);
     best = best_of(trials, phi);
     // Where much is missing the first law may bring little before the second is there: what is not needed in the end is
     // taken out again.
@@ -494,7 +506,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     if (!take(naming, *best, data, options)) break;
     if (is_near()) return naming;
     if (excess(*naming.best.model) <= kGross &&
-        is_within_tolerance(naming.best.effects.back(), naming.best, data.sensors)) {
+        is_within_tolerance(naming.best.effects.back(), *naming.best.model, data.sensors)) {
       naming.best = before;
       naming.sensors_are_inexact = true;
       return naming;

@@ -24,10 +24,11 @@ struct Forbidden {
 
 struct Naming {
   std::shared_ptr<const FittedModel> baseline;
-  Trial best;                 ///< effects may be empty
-  std::vector<Trial> trials;  ///< all that were refitted, the best among them
-  Screening first;            ///< of the baseline
-  Screening last;             ///< of the best model
+  Trial best;                     ///< effects may be empty
+  std::vector<Trial> trials;      ///< all that were refitted, the best among them
+  std::vector<Trial> fewer = {};  ///< models without one law of another (without_law)
+  Screening first;                ///< of the baseline
+  Screening last;                 ///< of the best model
   std::vector<Forbidden> forbidden = {};
   std::vector<std::string> remarks = {};              ///< what was not taken for a reason of computation
   std::shared_ptr<const FittedModel> looked_at = {};  ///< the model that was screened last,

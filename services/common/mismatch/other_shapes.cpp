@@ -127,23 +127,31 @@ std::string laws_in_words(const std::vector<Effect>& effects) {
   return joined(laws, " and ");
 }
 
+// A first round in a gross misfit has none: such a model is no match for one that has them.
+std::ptrdiff_t known_values_in(const FittedModel& model) {
+  return std::ranges::count_if(model.problem.shared, [](const Unknown& unknown) { return unknown.is_known(); });
+}
+
 }  // namespace
 
-std::optional<Trial> without_law(const Naming& naming, const Trial& trial, std::size_t slot, const Data& data,
-                                 int threads) {
+std::optional<Trial> without_law(Naming& naming, const Trial& trial, std::size_t slot, const Data& data, int threads) {
   Trial fewer{.effects = trial.effects, .model = nullptr};
   fewer.effects.erase(fewer.effects.begin() + static_cast<std::ptrdiff_t>(slot));
   if (fewer.effects.empty()) return Trial{{}, naming.baseline};
-  for (const Trial& known : naming.trials)
-    if (known.model->optimum.converged && same_effects(known.effects, fewer.effects) &&
-        (fewer.model == nullptr || known.model->misfit < fewer.model->misfit))
-      fewer.model = known.model;
-  if (fewer.model != nullptr) return with_derivatives(std::move(fewer), data, threads);
+  Trial* known = nullptr;
+  for (std::vector<Trial>* trials : {&naming.trials, &naming.fewer})
+    for (Trial& one : *trials)
+      if (one.model->optimum.converged && same_effects(one.effects, fewer.effects) &&
+          known_values_in(*one.model) == known_values_in(*trial.model) &&
+          (known == nullptr || one.model->misfit < known->model->misfit))
+        known = &one;
+  if (known != nullptr) return *known = with_derivatives(*known, data, threads);
   AssetConfig asset = trial.model->asset;
   asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(trial.effects.size() - slot));
   Result<FittedModel> model = fit_model(asset, data, trial.model.get(), threads);
   if (!model) return std::nullopt;
   fewer.model = std::make_shared<const FittedModel>(std::move(*model));
+  naming.fewer.push_back(fewer);
   return fewer;
 }
 
@@ -216,7 +224,7 @@ void another_law_for_each(Naming& naming, const Data& data, const ExplainOptions
     const std::optional<Trial> fewer = without_law(naming, naming.best, slot, data, options.threads);
     if (!fewer) continue;
     naming.trials.push_back(*fewer);
-    const auto left = screen(*fewer->model, data, {.seed = options.seed, .threads = options.threads});
+    const auto left = screen(*fewer->model, data, {.draws = 1, .seed = options.seed, .threads = options.threads});
     if (!left) continue;
     std::vector<std::vector<LawStart>> starts;
     for (LawStart& start : ranked_laws(*left, kOtherLaws + kSingleLaws))

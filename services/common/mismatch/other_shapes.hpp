@@ -24,10 +24,10 @@ void another_law_for_each(Naming& naming, const Data& data, const ExplainOptions
 /// each law of the element is asked for what they do together, and stays where several are not worth another law.
 void one_law_for_several(Naming& naming, const Data& data, const ExplainOptions& options);
 
-/// A trial without one of its laws: as the search fitted it already, where that converged, else fitted from the trial.
+/// A trial without one of its laws: as it was fitted already, where that converged, else fitted from the trial, and kept.
 /// None where that cannot be simulated or time is up.
-[[nodiscard]] std::optional<Trial> without_law(const Naming& naming, const Trial& trial, std::size_t slot,
-                                               const Data& data, int threads);
+[[nodiscard]] std::optional<Trial> without_law(Naming& naming, const Trial& trial, std::size_t slot, const Data& data,
+                                               int threads);
 
 /// What a model leaves; that of the last one asked is remembered, as a search asks twice before it takes a model.
 [[nodiscard]] Result<Screening> look(Naming& naming, const std::shared_ptr<const FittedModel>& model, const Data& data,

@@ -1,5 +1,7 @@
-// Which of the laws found prove themselves on recordings that took no part in their fit: what does not is taken back,
-// the last law first. In a gross misfit the explanation is chosen that carries over.
+// Which of the laws found prove themselves on recordings that took no part in their fit. Together they predict these
+// beyond doubt better than the model without them, and each of them better than the others alone: near the noise by what
+// is likeliest, as the fit told each law beyond doubt; in a gross misfit, where a fit tells little, beyond doubt. What
+// does not is taken back, the law that helps least first. In a gross misfit the explanation is chosen that carries over.
 #pragma once
 
 #include <memory>
@@ -16,8 +18,9 @@ namespace sealwatch::mismatch {
 /// Of an analysis that outlives it.
 struct ToProve {
   HeldOut held_out;
-  const Naming& naming;
+  Naming& naming;  ///< keeps the models without one law that are fitted
   std::shared_ptr<const FittedModel> baseline;
+  std::vector<KnownValue> sensors = {};  ///< that were taken for exact: what each may be off by
 };
 
 struct ProvenLaws {

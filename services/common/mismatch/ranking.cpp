@@ -123,8 +123,7 @@ std::vector<std::vector<LawStart>> ranked_pairs(const Screening& screening, doub
   };
   const std::vector<const Variant*> singles = best_of_each(screening);
   const auto of_measurement = [&](const Variant& variant) {
-    const SiteKind kind = screening.candidates[variant.candidate].law->kind;
-    return is_sensor(kind) || is_of_recording(kind);
+    return is_of_measurement(screening.candidates[variant.candidate].law->kind);
   };
   std::vector<Pair> pairs;
   for (std::size_t j = 0; j < singles.size(); ++j)

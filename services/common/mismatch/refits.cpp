@@ -80,6 +80,13 @@ std::vector<KnownValue> known_parameters(const Data& data, const AssetConfig& as
   return known;
 }
 
+// Whether a model was fitted beside such values as they are known.
+bool lacks_tolerances(const FittedModel& model, const Data& data) {
+  return std::ranges::any_of(known_parameters(data, model.asset), [&](const KnownValue& value) {
+    return std::ranges::find(model.problem.shared, value.name, &Unknown::name) == model.problem.shared.end();
+  });
+}
+
 Data without_known(Data data, const std::vector<KnownValue>& known) {
   std::erase_if(data.known, [&](const KnownValue& value) {
     return std::ranges::find(known, value.name, &KnownValue::name) != known.end();
@@ -295,6 +302,10 @@ Trial with_derivatives(Trial trial, const Data& data, int threads) {
 
 Trial polished(Trial trial, const Data& data, int threads) {
   constexpr int kRounds = 3;
+  if (lacks_tolerances(*trial.model, data)) {
+    Result<FittedModel> with = fit_model(trial.model->asset, data, trial.model.get(), threads);
+    if (with) trial.model = std::make_shared<const FittedModel>(std::move(*with));
+  }
   for (int round = 0; round < kRounds; ++round) {
     const bool exact = is_exact_enough(*trial.model);
     if (exact && trial.model->optimum.converged) break;

@@ -58,7 +58,8 @@ inline constexpr double kOptimistic = 2.0;
 
 /// The trial with its derivatives, where a round did not keep them (refit); as it is where they cannot be computed.
 [[nodiscard]] Trial with_derivatives(Trial trial, const Data& data, int threads);
-/// A search that ran out of iterations, or whose simulations were coarser than its misfit allows, goes on from where it is.
+/// A search that ran out of iterations, whose simulations were coarser than its misfit allows, or that ended with a first
+/// round, without what values may be off by within their tolerances, goes on from where it is.
 [[nodiscard]] Trial polished(Trial trial, const Data& data, int threads);
 
 }  // namespace sealwatch::mismatch

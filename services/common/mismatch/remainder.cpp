@@ -12,6 +12,7 @@
 #include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/standard_errors.hpp"
 #include "services/common/mismatch/telling.hpp"
+#include "services/common/mismatch/verdict.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -80,6 +81,10 @@ bool leaves_its_form_at_most(const FittedModel& without, const FittedModel& with
 }
 
 std::string left_beside(const LawAt& law, double share) { return may_be_the_form(law, share); }
+
+bool takes_up_little(const FittedModel& without, const FittedModel& with) {
+  return share_explained(without.misfit / without.residuals, with.misfit / with.residuals) < kExplainedAtLeast;
+}
 
 std::optional<NotTold> not_told_from_zero(const Trial& trial, const Resolution& resolution) {
   constexpr double kTold = 2.0;  // standard errors: 95 % of them lie closer to the true value

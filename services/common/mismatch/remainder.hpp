@@ -41,6 +41,9 @@ using MoreThanForm = std::function<bool(const LawAt&, const LawAt&)>;
 /// The same to a user: which law, and how much is left.
 [[nodiscard]] std::string left_beside(const LawAt& law, double share);
 
+/// Whether what came in takes less than half of what the model without it leaves beyond the noise.
+[[nodiscard]] bool takes_up_little(const FittedModel& without, const FittedModel& with);
+
 /// A law of a trial, and why it is not claimed.
 struct NotTold {
   std::size_t slot = 0;

@@ -103,6 +103,15 @@ std::string tolerated_name(const Effect& effect) {
   return effect.law->kind == SiteKind::sensor_bias ? sensor_offset_name(channel) : "";
 }
 
+bool is_within_tolerance(const Effect& effect, const FittedModel& model, const std::vector<KnownValue>& sensors) {
+  const std::string name = tolerated_name(effect);
+  const auto known = std::ranges::find(sensors, name, &KnownValue::name);
+  if (name.empty() || known == sensors.end()) return false;
+  const std::string strength = physics_parameter_name(effect.element, effect.law->id,
+                                                      effect.law->parameters[strengths_of(*effect.law).front()].name);
+  return std::abs(*estimate_of(model, strength)) <= kWithinTolerance * known->standard_deviation;
+}
+
 AssetConfig with_free_value(AssetConfig asset, const std::string& name) {
   ParameterSetting& setting = asset.parameters.at(name);
   const auto [low, high] = std::minmax({setting.value / kOffByAtMost, setting.value * kOffByAtMost});

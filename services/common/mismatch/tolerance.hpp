@@ -42,6 +42,10 @@ inline constexpr double kUsualSensorTolerance = 0.0025;
 /// What a law of a sensor's gain or offset is called there; "" of other laws.
 [[nodiscard]] std::string tolerated_name(const Effect& effect);
 
+/// Whether a law of a sensor's gain or offset is no more than the tolerance of one of `sensors` lets it be: no fault, that is.
+[[nodiscard]] bool is_within_tolerance(const Effect& effect, const FittedModel& model,
+                                       const std::vector<KnownValue>& sensors);
+
 /// ln det(I + T F T / phi): what the recordings tell of unknowns that were known before, T their tolerances, F what the
 /// recordings tell of them though everything else gives way (Schur complement of the normal matrix). The price of having
 /// them at all, in units of the criterion: -2 ln of the Occam factor of their evidence.

@@ -160,6 +160,10 @@ class Analysis {
   // A law that has no value where the plant goes may be what is missing.
   void note_laws_not_asked();
   static void say_what_was_cut(Explanation& result);
+  /// Of the laws found without one of them, the explanation that predicts held-out recordings best and makes no channel
+  /// worse there; nothing where each does.
+  std::optional<Trial> without_what_makes_it_worse();
+  void take_back_to(const Trial& rest);
   void take_all_laws_back();
   // Laws that leave less than half of a channel's course reproduced, far above its noise, bend to something else: a
   // wrong unit, a sign, a channel of another sensor.

@@ -236,9 +236,36 @@ bool Analysis::takes_back_what_does_not_carry_over() {
   result_.notes.push_back(worse != nullptr ? does_not_carry_over(*worse)
                                            : "What was found cannot be compared with anything on the held-out "
                                              "recordings: it is not claimed.");
+  if (const std::optional<Trial> rest = worse != nullptr ? without_what_makes_it_worse() : std::nullopt) {
+    take_back_to(*rest);
+    return true;
+  }
   tried_ = best_;
   take_all_laws_back();
   return true;
+}
+
+std::optional<Trial> Analysis::without_what_makes_it_worse() {
+  std::optional<Trial> rest;
+  double most = 0.0;
+  time_.allow_what_is_needed();
+  for (std::size_t slot = 0; slot < best_.effects.size() && best_.effects.size() > 1; ++slot) {
+    const Trial fewer = without(best_, slot, to_prove());
+    std::vector<RecordingComparison> compared;
+    const auto blocks = held_out().gains({{}, baseline_}, fewer, &compared);
+    if (!blocks || blocks->gain.empty() || made_worse(pool(compared, true)) != nullptr) continue;
+    const GainInterval gain = gain_interval(*blocks, dispersion(*fewer.model), options_.seed);
+    if (gain.low <= 0.0 || gain.gain * dispersion(*fewer.model) <= most) continue;
+    most = gain.gain * dispersion(*fewer.model);
+    rest = fewer;
+  }
+  return rest;
+}
+
+void Analysis::take_back_to(const Trial& rest) {
+  best_ = rest;
+  result_.effects.clear();
+  result_.recordings.clear();
 }
 
 double Analysis::share_explained_by(const FittedModel& model) const {

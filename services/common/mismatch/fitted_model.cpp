@@ -236,7 +236,12 @@ Result<FittedModel> fit_model_beside(const PemPoint& beside, const AssetConfig& 
 
 Result<FittedModel> fit_to_some(const FittedModel& model, const Data& data, std::span<const std::size_t> places,
                                 int threads, int iterations) {
-  Result<FittedModel> refitted = fit_from(model, {}, model.asset, data, threads, iterations, {}, places);
+  return fit_to_some(model, model.asset, data, places, threads, iterations);
+}
+
+Result<FittedModel> fit_to_some(const FittedModel& model, const AssetConfig& asset, const Data& data,
+                                std::span<const std::size_t> places, int threads, int iterations) {
+  Result<FittedModel> refitted = fit_from(model, {}, asset, data, threads, iterations, {}, places);
   if (!refitted) return refitted;
   return as_exact_as_it_fits(std::move(*refitted), data, threads, iterations, {});
 }

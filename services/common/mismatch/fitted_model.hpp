@@ -76,6 +76,10 @@ inline constexpr int kSearchIterations = 30;
                                               std::span<const std::size_t> places, int threads,
                                               int iterations = kSearchIterations);
 
+/// The same of another asset, whose values it sets out from.
+[[nodiscard]] Result<FittedModel> fit_to_some(const FittedModel& model, const AssetConfig& asset, const Data& data,
+                                              std::span<const std::size_t> places, int threads, int iterations);
+
 /// Goes on with the search that ended at `model`, with the same unknowns.
 [[nodiscard]] Result<FittedModel> continue_fit(const FittedModel& model, const Data& data, int threads, int iterations,
                                                const SearchBound& bound = {});

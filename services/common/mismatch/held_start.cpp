@@ -152,8 +152,10 @@ HeldStart start_from_held(const FittedModel& baseline, const Data& data, const E
   Deadline until(options.cancel);
   until.set_in(allowed_s);
   const std::vector<std::size_t> places = missed_most(baseline, data);
-  const Data some = some_of(data, places);
-  const Result<FittedModel> there = fit_to_some(baseline, some, places, options.threads, 0);
+  // As in a first round (refit): tolerances, which bend to what is missing, come with the free run.
+  AsKnown plain = as_known(baseline.asset, data);
+  const Data some = some_of(std::move(plain.data), places);
+  const Result<FittedModel> there = fit_to_some(baseline, plain.asset, some, places, options.threads, 0);
   if (!there) return start;
   std::optional<Held> held = hold(*there, some, until, options.threads);
   if (!held) return start;

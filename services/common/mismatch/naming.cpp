@@ -329,7 +329,7 @@ std::vector<Trial> causes_among(const std::vector<Trial>& trials, const Trial& f
 std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptions& options, double to_beat) {
   const std::size_t level = naming.best.effects.size();
   const bool gross = excess(*naming.best.model) > kGross;
-  const Screening& asked = naming.last;
+  const Screening asked = causes_in(naming.last, *naming.best.model);
   std::vector<std::vector<LawStart>> singles;
   for (LawStart& start : ranked_laws(asked, level == 0 || gross ? kSingles : kSingles / 2 + 1))
     singles.push_back({std::move(start)});
@@ -383,6 +383,18 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
   }
   naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
   return with_differing(std::move(trials));
+}
+
+// Whether one of the laws found is a sensor within its tolerance: that is no fault, and the others are to be asked beside
+// sensors that are off by what they may be. In a gross misfit that tells nothing yet.
+bool takes_sensors_for_exact(Naming& naming, const Data& data, int threads) {
+  if (excess(*naming.best.model) > kGross) return false;
+  for (std::size_t slot = naming.best.effects.size(); slot-- > 0;) {
+    if (!is_within_tolerance(naming.best.effects[slot], *naming.best.model, data.sensors)) continue;
+    naming.best = without_law(naming, naming.best, slot, data, threads).value_or(Trial{{}, naming.baseline});
+    naming.sensors_are_inexact = true;
+  }
+  return naming.sensors_are_inexact;
 }
 
 }  // namespace
@@ -505,12 +517,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     const Trial before = naming.best;
     if (!take(naming, *best, data, options)) break;
     if (is_near()) return naming;
-    if (excess(*naming.best.model) <= kGross &&
-        is_within_tolerance(naming.best.effects.back(), *naming.best.model, data.sensors)) {
-      naming.best = before;
-      naming.sensors_are_inexact = true;
-      return naming;
-    }
+    if (takes_sensors_for_exact(naming, data, options.threads)) return naming;
     if (in_time("values of the asset file in place of laws"))
       if (auto beside = value_in_place(naming, true, data, options, progress)) return std::move(*beside);
     if (in_time("other shapes of the law found")) from_other_shapes(naming, before, asked, data, options);
@@ -518,6 +525,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
       if (auto beside = value_in_place(naming, false, data, options, progress)) return std::move(*beside);
     if (in_time("other laws in place of those found before")) another_law_for_each(naming, data, options);
     if (in_time("one law in place of several")) one_law_for_several(naming, data, options);
+    if (takes_sensors_for_exact(naming, data, options.threads)) return naming;
   }
   if (!naming.differs_in.empty()) return naming;
   settle(naming, data, options);

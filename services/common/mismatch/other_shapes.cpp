@@ -227,7 +227,7 @@ void another_law_for_each(Naming& naming, const Data& data, const ExplainOptions
     const auto left = screen(*fewer->model, data, {.draws = 1, .seed = options.seed, .threads = options.threads});
     if (!left) continue;
     std::vector<std::vector<LawStart>> starts;
-    for (LawStart& start : ranked_laws(*left, kOtherLaws + kSingleLaws))
+    for (LawStart& start : ranked_laws(causes_in(*left, *fewer->model), kOtherLaws + kSingleLaws))
       if (start.effect.element != naming.best.effects[slot].element && starts.size() < kOtherLaws)
         starts.push_back({std::move(start)});
     for (Trial& trial : refit(*fewer, starts, data, options.threads, {.to_beat = naming.best.model->misfit}))

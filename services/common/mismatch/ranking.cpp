@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "services/common/mismatch/criterion.hpp"
+#include "services/common/mismatch/verdict.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -78,6 +79,17 @@ std::vector<const Variant*> by_gain(const Screening& screening) {
     if (variant.gain > 0.0) order.push_back(&variant);
   std::ranges::stable_sort(order, std::greater<>(), [](const Variant* variant) { return variant->gain; });
   return order;
+}
+
+Screening causes_in(Screening screening, const FittedModel& model) {
+  const std::vector<const Variant*> order = by_gain(screening);
+  const double most = order.empty() ? 0.0 : order.front()->gain,
+               half_of_what_is_left = kExplainedAtLeast * (model.misfit - model.residuals);
+  for (Variant& variant : screening.variants)
+    if (is_sensor(screening.candidates[variant.candidate].law->kind) && variant.gain < most &&
+        kOptimistic * variant.gain < half_of_what_is_left)
+      variant.gain = 0.0;
+  return screening;
 }
 
 std::vector<LawStart> ranked_laws(const Screening& screening, std::size_t most, bool in_proportion) {

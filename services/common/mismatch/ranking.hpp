@@ -11,6 +11,11 @@ namespace sealwatch::mismatch {
 /// All variants that promise something, by their gain.
 [[nodiscard]] std::vector<const Variant*> by_gain(const Screening& screening);
 
+/// The screening of a model without those laws of sensors that promise too little to take half of what is left beyond the
+/// noise, though the linear model, which is nearly exact for them, be off by kOptimistic: they take up some of whatever is
+/// missing. The law that promises most stays, whatever it is.
+[[nodiscard]] Screening causes_in(Screening screening, const FittedModel& model);
+
 /// Best variants by gain, no law at the same element twice; with start values from the linear step. These are kept near
 /// usual sizes, unless the model is known to answer `in_proportion`.
 [[nodiscard]] std::vector<LawStart> ranked_laws(const Screening& screening, std::size_t most,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <ranges>
 #include <span>
 #include <utility>
@@ -87,13 +88,6 @@ bool lacks_tolerances(const FittedModel& model, const Data& data) {
   });
 }
 
-Data without_known(Data data, const std::vector<KnownValue>& known) {
-  std::erase_if(data.known, [&](const KnownValue& value) {
-    return std::ranges::find(known, value.name, &KnownValue::name) != known.end();
-  });
-  return data;
-}
-
 // A trial while it is being worked on.
 struct Refit {
   std::vector<Effect> effects;
@@ -136,7 +130,7 @@ class GoesOn {
   [[nodiscard]] SearchBound bound_of_first() const { return {.cost = 0.5 * kHopeful * best_, .optimism = kHopeful}; }
 
   [[nodiscard]] bool at_first(const FittedModel& model) const { return may_come_near(model) && is_hopeful(model); }
-  [[nodiscard]] bool is_hopeful(const FittedModel& model) const { return !gross_ || model.misfit <= kHopeful * best_; }
+  [[nodiscard]] bool is_hopeful(const FittedModel& model) const { return model.misfit <= kHopeful * best_; }
   [[nodiscard]] bool after(const FittedModel& before, const FittedModel& model) const {
     const bool nearer = model.misfit - best_ <= kNearer * std::max(before.misfit - best_, 0.0);
     return may_come_near(model) && nearer;
@@ -171,15 +165,14 @@ class Refits {
  public:
   Refits(const Trial& from, const Data& data, int threads, const RefitOptions& options)
       : from_(from), data_(data), threads_(threads), options_(options), gross_(excess(*from.model) > kGross) {
-    if (gross_) known_ = known_parameters(data, from.model->asset);
-    if (!known_.empty()) as_known_ = without_known(data, known_);
+    if (gross_ && !known_parameters(data, from.model->asset).empty()) first_ = as_known(from.model->asset, data);
   }
 
   std::vector<Trial> run(const std::vector<std::vector<LawStart>>& laws) {
     std::vector<Refit> refits = first_round(laws);
     if (refits.empty()) return {};
     const std::size_t count = options_.first_round_only ? 0 : std::min(refits.size(), kGoOn),
-                      ahead = known_.empty() ? count : std::min(count, kAhead);
+                      ahead = first_ ? std::min(count, kAhead) : count;
     best_ = refits.front().model;
     go_on(std::span(refits).first(ahead));
     go_on(std::span(refits).subspan(ahead, count - ahead));
@@ -188,10 +181,10 @@ class Refits {
   }
 
  private:
-  [[nodiscard]] const Data& first_data() const { return known_.empty() ? data_ : as_known_; }
+  [[nodiscard]] const Data& first_data() const { return first_ ? first_->data : data_; }
   [[nodiscard]] SearchBound bound_after(const FittedModel& best) const {
     const GoesOn goes_on(best, options_.to_beat);
-    return known_.empty() ? goes_on.bound() : goes_on.bound_of_first();
+    return first_ ? goes_on.bound_of_first() : goes_on.bound();
   }
 
   // The best first.
@@ -213,7 +206,8 @@ class Refits {
   [[nodiscard]] Refit one(const std::vector<LawStart>& added) const {
     Refit refit = start(added, 1.0);
     const bool cut = refit.model != nullptr && refit.model->optimum.out_of_reach;
-    const bool worse = options_.again_smaller && !cut && options_.in_place_of.empty() && excess(*from_.model) < kFar &&
+    const bool worse = options_.again_smaller && !first_ && !cut && options_.in_place_of.empty() &&
+                       excess(*from_.model) < kFar &&
                        (refit.model == nullptr || refit.model->misfit > from_.model->misfit);
     if (!worse) return refit;
     Refit again = start(added, kSmaller);
@@ -223,8 +217,7 @@ class Refits {
 
   [[nodiscard]] Refit start(const std::vector<LawStart>& added, double share) const {
     Refit refit{.effects = from_.effects, .model = nullptr};
-    AssetConfig asset = from_.model->asset;
-    for (const KnownValue& value : known_) asset.parameters.at(value.name).value = value.value;
+    AssetConfig asset = first_ ? first_->asset : from_.model->asset;
     for (const std::size_t out : options_.in_place_of | std::views::reverse) {
       asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(refit.effects.size() - out));
       refit.effects.erase(refit.effects.begin() + static_cast<std::ptrdiff_t>(out));
@@ -260,7 +253,7 @@ class Refits {
   [[nodiscard]] Refit further(Refit refit) const {
     const GoesOn goes_on(*best_, options_.to_beat);
     bool open = goes_on.at_first(*refit.model) || !is_exact_enough(*refit.model);
-    if (!known_.empty() && goes_on.is_hopeful(*refit.model)) {
+    if (first_ && goes_on.is_hopeful(*refit.model)) {
       Result<FittedModel> model = fit_model(refit.model->asset, data_, refit.model.get(), 1, kRound, goes_on.bound());
       if (!model) return refit;
       refit.model = std::make_shared<FittedModel>(std::move(*model));
@@ -277,8 +270,7 @@ class Refits {
 
   const Trial& from_;
   const Data& data_;
-  Data as_known_;  ///< without the values that are known, where it is gross
-  std::vector<KnownValue> known_;
+  std::optional<AsKnown> first_;  ///< of a first round that goes on with tolerances
   int threads_;
   const RefitOptions& options_;
   bool gross_;
@@ -287,6 +279,15 @@ class Refits {
 };
 
 }  // namespace
+
+AsKnown as_known(const AssetConfig& asset, const Data& data) {
+  AsKnown plain{asset, data};
+  for (const KnownValue& value : known_parameters(data, asset)) {
+    plain.asset.parameters.at(value.name).value = value.value;
+    std::erase_if(plain.data.known, [&](const KnownValue& one) { return one.name == value.name; });
+  }
+  return plain;
+}
 
 double could_reach(const FittedModel& model, double optimism) {
   if (model.optimum.converged) return model.misfit;

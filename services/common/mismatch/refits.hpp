@@ -32,6 +32,13 @@ struct LawStart {
   PemPoint beside = {};
 };
 
+/// Where values of the asset file that are known within a tolerance are as the file gives them, and stay that.
+struct AsKnown {
+  AssetConfig asset;
+  Data data;
+};
+[[nodiscard]] AsKnown as_known(const AssetConfig& asset, const Data& data);
+
 struct RefitOptions {
   /// Indices of effects of the model set out from that are taken out first, ascending.
   std::vector<std::size_t> in_place_of = {};

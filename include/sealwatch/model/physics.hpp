@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -114,9 +115,10 @@ struct HiddenState {
   std::string_view name;  ///< "bristle"
   std::string_view unit;
   double scale = 1.0;         ///< its usual size
-  bool free_initial = false;  ///< each recording's own (a shaft angle)
-  bool settled = false;       ///< starts at its equilibrium; otherwise at 0
-  bool shaft_angle = false;   ///< integral of the site's speed; the law's second parameter counts periods in a turn
+  bool free_initial = false;  ///< each recording's own, estimated (a shaft angle, bristles that were left bent)
+  double least = -std::numeric_limits<double>::infinity(), most = std::numeric_limits<double>::infinity();  ///< of that
+  bool settled = false;      ///< starts at its equilibrium; otherwise at 0
+  bool shaft_angle = false;  ///< integral of the site's speed; the law's second parameter counts periods in a turn
 };
 
 struct Law {

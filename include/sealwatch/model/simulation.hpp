@@ -134,6 +134,8 @@ class PlantSimulation {
   [[nodiscard]] virtual std::span<const std::string> state_names() const = 0;
   /// The states whose initial values should be estimated with every recording: p_A, p_B, x.
   [[nodiscard]] virtual std::span<const std::string> slow_state_names() const = 0;
+  /// Between what the initial value of a law's hidden state lies; unbounded for the plant's own states.
+  [[nodiscard]] virtual std::pair<double, double> initial_range(std::string_view state) const = 0;
   /// Those, and the states that are known where a recording begins but not in its midst (at rest before a test).
   [[nodiscard]] virtual std::span<const std::string> free_state_names() const = 0;
   /// The asset's parameters, the initial state from the first samples, the load factor from the mean force balance.

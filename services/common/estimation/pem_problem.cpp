@@ -169,6 +169,7 @@ Result<std::vector<Unknown>> own_unknowns(const PlantSimulation& simulation, boo
     const StateDescription* description = simulation.plant().find_state(state);
     const std::string unit = description == nullptr ? "1" : description->unit;  // of a law: an angle in rad
     unknowns.push_back(own_unknown("initial:" + state, unit, *quantity, quantity->in(simulation.start())));
+    std::tie(unknowns.back().min, unknowns.back().max) = simulation.initial_range(state);
   }
   return unknowns;
 }

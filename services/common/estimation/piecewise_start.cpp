@@ -42,13 +42,14 @@ void free_all_states(PemRecording& piece, const PlantDescription& plant) {
     if (std::ranges::find(piece.own, name, &Unknown::name) != piece.own.end()) continue;
     const FreeQuantity quantity = *piece.simulation->find(name);
     const double start = quantity.in(piece.simulation->start());
+    const auto [least, most] = piece.simulation->initial_range(state);
     piece.own.push_back({.name = name,
                          .unit = plant.find_state(state) == nullptr ? "1" : plant.find_state(state)->unit,
                          .quantity = quantity,
                          .scale = start != 0.0 ? std::abs(start) : 1.0,
                          .start = start,
-                         .min = -std::numeric_limits<double>::infinity(),
-                         .max = std::numeric_limits<double>::infinity()});
+                         .min = least,
+                         .max = most});
   }
 }
 

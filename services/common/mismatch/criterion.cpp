@@ -76,11 +76,30 @@ bool differs(double p_value, const FittedModel& model, double false_alarm_rate) 
   return p_value <= false_alarm_rate || excess(model) > kGross;
 }
 
+namespace {
+
+// Initial values of laws' hidden states, which a model without these laws has not: told by the first seconds of a
+// recording, whatever its length. Those of the plant's states every model has.
+double initial_values_of_laws(const PemProblem& problem) {
+  constexpr std::string_view kInitial = "initial:";
+  std::ptrdiff_t count = 0;
+  for (const PemRecording& recording : problem.recordings)
+    count += std::ranges::count_if(recording.own, [&](const Unknown& unknown) {
+      const std::string_view name = unknown.name;
+      return name.starts_with(kInitial) &&
+             recording.simulation->plant().find_state(name.substr(kInitial.size())) == nullptr;
+    });
+  return static_cast<double>(count);
+}
+
+}  // namespace
+
 double criterion(const FittedModel& model, double dispersion) {
   const auto laws = model.problem.recordings.front().simulation->physics_parameters();
   const auto of_recording = std::ranges::count_if(
       laws, [](const PhysicsParameter& parameter) { return is_of_recording(parameter.law->kind); });
   return model.misfit / dispersion + kOfRecording * static_cast<double>(of_recording) +
+         kLeastPenalty * initial_values_of_laws(model.problem) +
          static_cast<double>(model.free_shared) * std::max(kLeastPenalty, std::log(model.residuals / dispersion));
 }
 

@@ -287,7 +287,7 @@ AssetConfig with_law(AssetConfig asset, const Law& law, const std::string& eleme
   for (std::size_t k = 0; k < law.parameters.size(); ++k) {
     const LawParameter& parameter = law.parameters[k];
     const LawBounds bounds = law_bounds(plant, parameter);
-    const bool whole = parameter.unit == "1/rev" || (law.hidden && law.hidden->free_initial && !parameter.strength);
+    const bool whole = parameter.unit == "1/rev" || (law.hidden && law.hidden->shaft_angle && !parameter.strength);
     term.parameters[std::string(parameter.name)] = {.value = std::clamp(parameters[k], bounds.min, bounds.max),
                                                     .min = bounds.min,
                                                     .max = bounds.max,

@@ -95,7 +95,7 @@ std::vector<PassColumn> pass_columns(const std::vector<Candidate>& candidates) {
                           .point = point,
                           .strength = strength,
                           .unit = candidates[c].strength_scale * candidates[c].grid[point][strength]};
-        if (candidates[c].law->hidden && candidates[c].law->hidden->free_initial) {
+        if (candidates[c].law->hidden && candidates[c].law->hidden->shaft_angle) {
           column.own = true;
           columns.push_back(column);
           column.hidden = std::numbers::pi / (2.0 * candidates[c].grid[point][1]);  // a quarter of a period further

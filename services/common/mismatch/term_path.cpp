@@ -42,7 +42,7 @@ class PathRecorder final : public InjectedColumns {
   std::vector<double> parts_;
 };
 
-// Where a hidden state of the recording's own (a shaft's angle) starts.
+// Where a hidden state of the recording's own (a shaft's angle, bristles) starts.
 double hidden_start(const SimulatedPoint& at, const Law& law, const std::string& element) {
   if (!law.hidden || !law.hidden->free_initial) return 0.0;
   const std::vector<Unknown>& own = at.problem->recordings[at.recording].own;

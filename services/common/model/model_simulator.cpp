@@ -1,5 +1,6 @@
 #include "services/common/model/model_simulator.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "services/common/dense/dense.hpp"
@@ -64,8 +65,14 @@ Eigen::VectorXd newton_step(const LinearisedFit& fit) {
   return scale.asDiagonal() * dense::Symmetric(scaled).solve(Eigen::VectorXd(scale.asDiagonal() * fit.gradient));
 }
 
-ModelValues moved(ModelValues values, std::span<const FreeQuantity> free, const Eigen::VectorXd& step) {
+ModelValues moved(const PlantSimulation& simulation, ModelValues values, std::span<const FreeQuantity> free,
+                  const Eigen::VectorXd& step) {
   for (std::size_t k = 0; k < free.size(); ++k) free[k].in(values) += step[static_cast<Eigen::Index>(k)];
+  for (const std::string& state : simulation.slow_state_names()) {
+    const auto [least, most] = simulation.initial_range(state);
+    double& initial = simulation.find("initial:" + state)->in(values);
+    initial = std::clamp(initial, least, most);
+  }
   return values;
 }
 
@@ -85,7 +92,7 @@ void improve(const PlantSimulation& simulation, const Eigen::VectorXd& variance,
     Eigen::VectorXd step = newton_step(fit);
     const double cost = fit.cost;
     for (int halving = 0; halving <= kHalvings; ++halving, step *= 0.5) {
-      const ModelValues candidate = moved(values, free, step);
+      const ModelValues candidate = moved(simulation, values, free, step);
       auto next = simulation.run(candidate, free, options);
       if (!next) continue;
       LinearisedFit next_fit = linearise(simulation, variance, *next);

@@ -107,6 +107,13 @@ RecordingErrors RecordedSimulation::errors_at(const ModelValues& values) const {
   return errors;
 }
 
+std::pair<double, double> RecordedSimulation::initial_range(std::string_view state) const {
+  for (const ActiveTerm& term : terms_.active)
+    if (term.hidden >= 0 && terms_.hidden_names[static_cast<std::size_t>(term.hidden)] == state)
+      return {term.law->hidden->least, term.law->hidden->most};
+  return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+}
+
 std::pair<double, double> RecordedSimulation::input_range(std::size_t input) const {
   const auto [least, largest] = std::ranges::minmax(input_.channels()[input].values);
   return {least, largest};

@@ -31,6 +31,7 @@ class RecordedSimulation : public PlantSimulation {
   [[nodiscard]] std::span<const std::string> channels() const override { return channel_names_; }
   [[nodiscard]] std::span<const std::string> state_names() const override { return state_names_; }
   [[nodiscard]] std::span<const std::string> slow_state_names() const override { return slow_state_names_; }
+  [[nodiscard]] std::pair<double, double> initial_range(std::string_view state) const override;
   [[nodiscard]] std::span<const std::string> free_state_names() const override { return free_state_names_; }
   [[nodiscard]] const ModelValues& start() const override { return start_; }
   [[nodiscard]] const RowMatrix& recorded() const override { return recorded_; }

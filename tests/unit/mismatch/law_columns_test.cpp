@@ -65,7 +65,7 @@ TEST(LawColumns, AreTheChangeThatALittleOfTheLawMakes) {
         std::ranges::find_if(which.law->parameters, &LawParameter::strength) - which.law->parameters.begin());
     // Oil lost from a chamber at rest moves its valve: a strong effect, and far from linear.
     const double kLittle = which.law->kind == SiteKind::outflow ? 2e-5 : 1e-3;
-    const bool turns = which.law->hidden && which.law->hidden->free_initial;  // many periods in every step
+    const bool turns = which.law->hidden && which.law->hidden->shaft_angle;  // many periods in every step
     const SimulationOptions tight = {.relative_tolerance = 1e-9, .maximum_step_s = turns ? 5e-4 : 5e-3};
     AssetConfig with = asset;
     with.physics = {term_of(which, kLittle)};

@@ -17,19 +17,22 @@ static LawOutput evaluate_backlash(const LawInput& in) {
 }
 
 Law backlash() {
-  return {.id = "backlash",
-          .form = "",
-          .kind = SiteKind::piston_force,
-          .equation = "-F_b (1 - s^4), s = 1 - 2 g, b dg/dt = abs(v) s^5 - v",
-          .meaning = "clearance between stem and load: the load is missing while it is crossed after a reversal",
-          .energy = "F_b between 0 and the load: what is missing is never more than the load",
-          .source = "Nordin, Gutman, Automatica 38 (2002) 1633, here smooth",
-          .parameters = {strength("F_b", "N", "load that is missing in the clearance",
-                                  {.usual = 5e3, .significant = 600.0, .max = 1e5}),
-                         shape("b", "m", "clearance", {2e-4, 5e-5, 8e-4}, 1e-5, 2e-3)},
-          .hidden = HiddenState{.name = "place_in_clearance", .unit = "1", .scale = 1.0},
-          .evaluate = &evaluate_backlash,
-          .roundings = {{"m/s", kStandstill_m_s}}};
+  return {
+      .id = "backlash",
+      .form = "",
+      .kind = SiteKind::piston_force,
+      .equation = "-F_b (1 - s^4), s = 1 - 2 g, b dg/dt = abs(v) s^5 - v",
+      .meaning = "clearance between stem and load: the load is missing while it is crossed after a reversal",
+      .energy = "F_b between 0 and the load: what is missing is never more than the load",
+      .source = "Nordin, Gutman, Automatica 38 (2002) 1633, here smooth",
+      .parameters = {strength("F_b", "N", "load that is missing in the clearance",
+                              {.usual = 5e3, .significant = 600.0, .max = 1e5}),
+                     shape("b", "m", "clearance", {2e-4, 5e-5, 8e-4}, 1e-5, 2e-3)},
+      .hidden =
+          HiddenState{
+              .name = "place_in_clearance", .unit = "1", .scale = 1.0, .free_initial = true, .least = 0.0, .most = 1.0},
+      .evaluate = &evaluate_backlash,
+      .roundings = {{"m/s", kStandstill_m_s}}};
 }
 
 }  // namespace sealwatch::laws

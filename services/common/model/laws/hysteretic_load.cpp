@@ -24,7 +24,8 @@ Law hysteretic_load() {
       .source = "Wen, Journal of the Engineering Mechanics Division ASCE 102 (1976) 249",
       .parameters = {strength("F_h", "N", "load once it has yielded", {.usual = 1e3, .significant = 600.0, .max = 1e5}),
                      shape("x_y", "m", "way over which it yields", {2e-3, 5e-4, 6e-3}, 1e-4, 5e-2)},
-      .hidden = HiddenState{.name = "memory", .unit = "1", .scale = 1.0},
+      .hidden =
+          HiddenState{.name = "memory", .unit = "1", .scale = 1.0, .free_initial = true, .least = -1.0, .most = 1.0},
       .evaluate = &evaluate_hysteretic_load,
       .roundings = {{"m/s", kStandstill_m_s}},
       .limit = "coulomb_friction"};

@@ -12,20 +12,22 @@ static LawOutput evaluate_presliding_friction_dahl(const LawInput& in) {
 }
 
 Law presliding_friction_dahl() {
-  return {.id = "presliding_friction",
-          .form = "dahl",
-          .kind = SiteKind::piston_force,
-          .equation = "F_c zeta, delta dzeta/dt = v - abs(v) zeta",
-          .meaning = "dry friction whose contacts bend like bristles before they slide",
-          .energy = "F_c >= 0: a closed path returns no more than the bristles stored",
-          .source = "Dahl, Aerospace Corporation TOR-0158(3107-18)-1 (1968)",
-          .parameters = {strength("F_c", "N", "friction force in sliding",
-                                  {.usual = 1e3, .significant = 600.0, .max = 1e5}),
-                         shape("delta", "m", "deflection at which the contacts slide", {5e-5, 5e-6, 2e-4}, 1e-6, 5e-4)},
-          .hidden = HiddenState{.name = "bristle", .unit = "1", .scale = 1.0},
-          .evaluate = &evaluate_presliding_friction_dahl,
-          .roundings = {{"m/s", kStandstill_m_s}},
-          .limit = "coulomb_friction"};
+  return {
+      .id = "presliding_friction",
+      .form = "dahl",
+      .kind = SiteKind::piston_force,
+      .equation = "F_c zeta, delta dzeta/dt = v - abs(v) zeta",
+      .meaning = "dry friction whose contacts bend like bristles before they slide",
+      .energy = "F_c >= 0: a closed path returns no more than the bristles stored",
+      .source = "Dahl, Aerospace Corporation TOR-0158(3107-18)-1 (1968)",
+      .parameters = {strength("F_c", "N", "friction force in sliding",
+                              {.usual = 1e3, .significant = 600.0, .max = 1e5}),
+                     shape("delta", "m", "deflection at which the contacts slide", {5e-5, 5e-6, 2e-4}, 1e-6, 5e-4)},
+      .hidden =
+          HiddenState{.name = "bristle", .unit = "1", .scale = 1.0, .free_initial = true, .least = -1.0, .most = 1.0},
+      .evaluate = &evaluate_presliding_friction_dahl,
+      .roundings = {{"m/s", kStandstill_m_s}},
+      .limit = "coulomb_friction"};
 }
 
 }  // namespace sealwatch::laws

@@ -56,8 +56,8 @@ class LogReader {
       return fail(std::move(error));
     }
     mapped_ = std::move(*mapped);
-    Result<TimeFormat> format = TimeFormat::of(mapped_.time_unit);
-    if (!format) return fail(error_at("channel time", mapped_.time_unit, format.error().rule));
+    Result<TimeFormat> format = time_format(mapped_);
+    if (!format) return fail(format.error());
     time_format_ = std::move(*format);
     for (std::size_t k = 0; k < mapped_.columns.size(); ++k)
       if (mapped_.columns[k].column.name == "time") time_ = k;

@@ -62,7 +62,7 @@ class Mapper {
     if (!taken_.contains("time"))
       return fail(error_at("channel time", {}, "is missing and required", "name its column under channels: time"));
     for (std::size_t index = 0; index < offered_.size(); ++index)
-      if (!used_.contains(index)) out_.left_aside.push_back(offered_[index].text);
+      if (!used_.contains(index) && !offered_[index].text.empty()) out_.left_aside.push_back(offered_[index].text);
     std::ranges::sort(out_.columns, {}, &MappedColumn::index);  // in the order of the file
     return std::move(out_);
   }

@@ -395,6 +395,31 @@ Result<const PlantDescription*> named_plant(const std::string& model) {
   return *plant;
 }
 
+/// Of "3/4/2031" nobody can tell whether it is in April or in March.
+void note_doubtful_date(Understood& log) {
+  const std::string& unit = log.map.columns.at("time").unit;
+  const std::vector<std::string>& cells = log.offer.cells[time_column(log.offer)];
+  const std::size_t day = unit.find("%d/%m/");
+  if (day == std::string::npos || cells.empty()) return;
+  std::string other = unit;
+  other.replace(day, 6, "%m/%d/");
+  const auto fits = [&](const std::string& cell) { return parse_pattern(cell, other).has_value(); };
+  if (std::ranges::all_of(cells, fits))
+    log.remarks.push_back("the time " + printable(cells.front()) +
+                          " is taken for day/month: where it is month/day, write '" + other + "' as its unit");
+}
+
+/// A clock without a day, and the day in a column of its own, which is not read: the test's start is then not known.
+void note_day_elsewhere(Understood& log) {
+  const Result<TimeFormat> format = TimeFormat::of(log.map.columns.at("time").unit);
+  if (!format || !format->is_absolute() || log.tests.front().start_time) return;
+  for (const OfferedColumn& column : log.offer.columns)
+    if (const std::string name = split_header_cell(column.text).name;
+        name == "Date" || name == "date" || name == "Datum")
+      log.remarks.push_back("the day in column " + name +
+                            " is not read: give the test's start_time in the log's sidecar");
+}
+
 Result<Understood> understand(const AssetNewOptions& options) {
   Result<Offer> offer = offer_of(options.log, {});
   if (!offer) return fail(offer.error());
@@ -439,6 +464,8 @@ Result<Understood> understand(const AssetNewOptions& options) {
   }
   if (const Status read = read_by_map(options.log, log); !read) return fail(read.error());
   note_switched_inputs(log);
+  note_doubtful_date(log);
+  note_day_elsewhere(log);
   const Result<std::string> recorded = recorded_asset_id(options.log);
   if (!recorded) return fail(recorded.error());
   log.asset_id = *recorded;

@@ -92,6 +92,13 @@ Result<double> parse_number(std::string_view text, char decimal) {
   text = trim(text);
   if (text.empty()) return fail("the cell is empty", "leave out the whole row of a missing sample");
   if (text.front() == '+') text.remove_prefix(1);
+  constexpr std::string_view kMinus = "\xE2\x88\x92";  // U+2212, as spreadsheets write it in some languages
+  std::array<char, kLongestNumber> with_minus{};
+  if (text.starts_with(kMinus) && text.size() <= with_minus.size()) {
+    with_minus[0] = '-';
+    std::ranges::copy(text.substr(kMinus.size()), with_minus.begin() + 1);
+    text = std::string_view(with_minus.data(), text.size() - kMinus.size() + 1);
+  }
   std::array<char, kLongestNumber> with_point{};
   if (decimal != '.') {
     if (text.size() > with_point.size() || text.find('.') != std::string_view::npos) return fail("must be a number");
@@ -178,6 +185,9 @@ Result<double> TimeFormat::seconds(std::string_view cell, char decimal) {
     if (!number && is_clock(cell))
       return fail(number.error().rule,
                   "a clock or a date needs its form as unit in the map: iso8601, or a pattern as '%d.%m.%Y %H:%M:%S'");
+    if (!number && number.error().advice.empty())
+      return fail(number.error().rule,
+                  "take the row out where it is no sample, as that of a summary or another header");
     return number ? Result<double>(to_s_.to_si(*number)) : number;
   }
   const Result<UtcTime> time = moment(cell, decimal);

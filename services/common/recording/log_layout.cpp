@@ -158,8 +158,11 @@ std::size_t row_called_units(const Reading& reading, std::size_t header_row) {
   for (std::size_t number = header_row; number-- > 1;) {
     const std::vector<std::string>& row = reading.rows[number - 1];
     if (row.size() > reading.width || row.empty() || !is_name_of_units(row.front())) continue;
-    if (std::any_of(row.begin() + 1, row.end(), [](const auto& cell) { return is_unit(without_brackets(cell)); }))
-      return number;
+    const auto count_of = [&row](const auto& is_one) { return std::count_if(row.begin() + 1, row.end(), is_one); };
+    const auto filled = count_of([](const std::string& cell) { return !is_blank(cell); });
+    const auto units = count_of([](const std::string& cell) { return is_unit(without_brackets(cell)); });
+    const bool names_a_machine = filled < 2 && reading.width > 2;  // "Unit;A"
+    if (units > 0 && 2 * units >= filled && !names_a_machine) return number;
   }
   return 0;
 }

@@ -97,6 +97,32 @@ TEST_F(AssetNew, VectorsWithHolesAreReadAsTheWrittenFileSays) {
   EXPECT_THAT(recording->samples.time_s, testing::ElementsAre(0.0, 1.0, 3.0));
 }
 
+TEST_F(AssetNew, ADateThatMayBeReadInTwoWaysIsRemarkedOn) {
+  write_pump();
+  const auto remark_of = [&](const std::string& date) {
+    std::filesystem::remove(path("a.yaml"));
+    const std::string text = "time,opening,pressure [bar]\n" + date + " 03:00:00,0.5,1\n" + date + " 03:00:01,0.5,2\n";
+    testing::internal::CaptureStdout();
+    EXPECT_EQ(make(text.c_str(), path("pump.yaml")), kOk);
+    return testing::internal::GetCapturedStdout();
+  };
+  EXPECT_THAT(remark_of("3/4/2031"),
+              testing::HasSubstr("the time 3/4/2031 03:00:00 is taken for day/month: where it is "
+                                 "month/day, write '%m/%d/%Y %H:%M:%S' as its unit"));
+  EXPECT_THAT(remark_of("25/4/2031"), testing::Not(testing::HasSubstr("day/month")));
+}
+
+TEST_F(AssetNew, ADayInAColumnOfItsOwnIsRemarkedOn) {
+  write_pump();
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(make("Date;Time;opening;pressure [bar]\n25.04.2031;23:59:59;0,5;1\n26.04.2031;00:00:00;0,5;2\n",
+                 path("pump.yaml")),
+            kOk);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              testing::AllOf(testing::HasSubstr("1 test of 2 samples"),
+                             testing::HasSubstr("the day in column Date is not read: give the test's start_time")));
+}
+
 TEST_F(AssetNew, DaysAsMatlabCountsThemAreRecognised) {
   write_pump();
   ASSERT_EQ(make("when,opening,pressure [bar]\n736696.25,0.5,1\n736696.250005787,0.5,2\n736696.250011574,0.5,4\n",

@@ -59,6 +59,11 @@ TEST_F(LoggerLayouts, UnitsStandFarAboveTheNamesWhereTheirRowSaysSo) {
     expect_three_rows(read(head + kRows, map_of("t", "ms")));
 }
 
+TEST_F(LoggerLayouts, AMachineCalledByAUnitIsNone) {
+  const Recording recording = read("Unit;A\nShift;2\nt [ms];U [mV];x [mm]\n" + kRows);
+  expect_three_rows(recording);
+}
+
 std::string labview_file(const std::string& x_columns, const std::string& names, const std::string& rows) {
   return "LabVIEW Measurement\nWriter_Version\t2\nSeparator\tTab\nDecimal_Separator\t.\nX_Columns\t" + x_columns +
          "\nTime_Pref\tRelative\nDate\t2031/04/12\nTime\t03:00:00.25\n***End_of_Header***\n\nChannels\t2\n"
@@ -71,7 +76,8 @@ TEST_F(LoggerLayouts, APreambleWithNumbersIsNoTable) {
   const std::string names = "X_Value\tU\tx\tComment\n";
   expect_three_rows(read(labview_file("One", names, "0\t1\t60\n0.5\t2\t59\n1\t4\t57\n"), map_of("X_Value", "s")));
   EXPECT_THAT(error_of(labview_file("No", names, "\t1\t60\n\t2\t59\n\t4\t57\n"), map_of("X_Value", "s")),
-              AllOf(HasSubstr("row 21, column 1 (X_Value, channel time)"), HasSubstr("the cell is empty")));
+              AllOf(HasSubstr("row 21, column 1 (X_Value, channel time)"),
+                    HasSubstr("the cell is empty; export the log with its times, as LabVIEW does with one X column")));
   const ChannelMap map = {.columns = {{"time", {.column = "x-axis", .unit = "s"}},
                                       {"motor_voltage", {.column = "1", .unit = {}}},
                                       {"position", {.column = "2", .unit = {}}}},
@@ -140,6 +146,17 @@ TEST_F(LoggerLayouts, DaysOfMatlabAndTimesSinceADate) {
 TEST_F(LoggerLayouts, FortransDoublePrecision) {
   expect_three_rows(
       read("# t[s] U[mV] x[mm]\n0.0D+00 1.0D+00 6.0D+01\n5.0D-01 2.0D+00 5.9D+01\n1.0D+00 4.0d+00 5.7d+01\n"));
+}
+
+TEST_F(LoggerLayouts, AMinusAsItIsPrinted) {
+  const Recording recording = read("t [s];U [mV];x [mm]\n0;−1;60\n0,5;−2,5;59\n");
+  EXPECT_THAT(recording.samples.find("motor_voltage")->values, ElementsAre(DoubleEq(-0.001), DoubleEq(-0.0025)));
+}
+
+TEST_F(LoggerLayouts, ASummaryBelowTheTableIsRefusedWithItsRemedy) {
+  EXPECT_THAT(error_of("t [s];U [mV];x [mm]\n0;1;60\n0.5;2;59\nMin;1;59\n"),
+              AllOf(HasSubstr("row 4, column 1 (t [s], channel time): 'Min': must be a number"),
+                    HasSubstr("take the row out where it is no sample")));
 }
 
 TEST_F(LoggerLayouts, WordsForNoValueHaveDigitsToo) {

@@ -217,6 +217,21 @@ std::string asset_id_of(const Understood& log, const AssetNewOptions& options) {
   return named.empty() ? fs::path(options.log).stem().string() : named;
 }
 
+/// The section `log`; of vectors, which have no rows of text, what became of their samples alone.
+std::string layout_yaml(const Understood& log) {
+  const LogLayout& layout = log.map.log;
+  std::string out;
+  if (log.offer.text) {
+    out += "  delimiter: " + layout.delimiter + "\n  decimal: " + layout.decimal + "\n";
+    if (layout.header_row > 0) out += "  header_row: " + std::to_string(layout.header_row) + "\n";
+    if (layout.units_row > 0) out += "  units_row: " + std::to_string(layout.units_row) + "\n";
+    out += "  first_row: " + std::to_string(layout.first_row) + "\n";
+  }
+  if (layout.time_resets != "refuse") out += "  time_resets: " + layout.time_resets + "\n";
+  if (layout.incomplete_rows != "refuse") out += "  incomplete_rows: " + layout.incomplete_rows + "\n";
+  return out.empty() ? out : "\nlog:\n" + out;
+}
+
 std::string yaml_of(const Understood& log, const AssetNewOptions& options) {
   const std::string model = model_name(*log.plant, fs::path(options.file).parent_path());
   std::string out = "# From " + fs::path(options.log).filename().string() +
@@ -241,15 +256,7 @@ std::string yaml_of(const Understood& log, const AssetNewOptions& options) {
     const std::string check = doubt(log, channel);
     out += (check.empty() ? "" : "; " + check) + "\n";
   }
-  const LogLayout& layout = log.map.log;
-  if (log.offer.text) {
-    out += "\nlog:\n  delimiter: " + layout.delimiter + "\n  decimal: " + layout.decimal + "\n";
-    if (layout.header_row > 0) out += "  header_row: " + std::to_string(layout.header_row) + "\n";
-    if (layout.units_row > 0) out += "  units_row: " + std::to_string(layout.units_row) + "\n";
-    out += "  first_row: " + std::to_string(layout.first_row) + "\n";
-    if (layout.time_resets != "refuse") out += "  time_resets: " + layout.time_resets + "\n";
-    if (layout.incomplete_rows != "refuse") out += "  incomplete_rows: " + layout.incomplete_rows + "\n";
-  }
+  out += layout_yaml(log);
   if (const std::string aside = left_aside(log); !aside.empty()) out += "# left aside: " + aside + "\n";
   return out;
 }
@@ -388,9 +395,41 @@ Result<const PlantDescription*> named_plant(const std::string& model) {
   return *plant;
 }
 
+/// Of "3/4/2031" nobody can tell whether it is in April or in March.
+void note_doubtful_date(Understood& log) {
+  const std::string& unit = log.map.columns.at("time").unit;
+  const std::vector<std::string>& cells = log.offer.cells[time_column(log.offer)];
+  const std::size_t day = unit.find("%d/%m/");
+  if (day == std::string::npos || cells.empty()) return;
+  std::string other = unit;
+  other.replace(day, 6, "%m/%d/");
+  const auto fits = [&](const std::string& cell) { return parse_pattern(cell, other).has_value(); };
+  if (std::ranges::all_of(cells, fits))
+    log.remarks.push_back("the time " + printable(cells.front()) +
+                          " is taken for day/month: where it is month/day, write '" + other + "' as its unit");
+}
+
+/// A clock without a day, and the day in a column of its own, which is not read: the test's start is then not known.
+void note_day_elsewhere(Understood& log) {
+  const Result<TimeFormat> format = TimeFormat::of(log.map.columns.at("time").unit);
+  if (!format || !format->is_absolute() || log.tests.front().start_time) return;
+  for (const OfferedColumn& column : log.offer.columns)
+    if (const std::string name = split_header_cell(column.text).name;
+        name == "Date" || name == "date" || name == "Datum")
+      log.remarks.push_back("the day in column " + name +
+                            " is not read: give the test's start_time in the log's sidecar");
+}
+
 Result<Understood> understand(const AssetNewOptions& options) {
   Result<Offer> offer = offer_of(options.log, {});
   if (!offer) return fail(offer.error());
+  if (!has_time(*offer))
+    return fail(Error{.file = options.log,
+                      .place = {},
+                      .value = {},
+                      .rule = "no column is a time: none is called so, holds clocks or rises from row to row",
+                      .advice = "export the log with its time, or with a count of samples: time: {column: N, unit: s, "
+                                "scale: SECONDS_BETWEEN_SAMPLES}"});
   Understood log;
   log.offer = std::move(*offer);
   log.map.columns["time"] = guess_time(log.offer);
@@ -425,6 +464,8 @@ Result<Understood> understand(const AssetNewOptions& options) {
   }
   if (const Status read = read_by_map(options.log, log); !read) return fail(read.error());
   note_switched_inputs(log);
+  note_doubtful_date(log);
+  note_day_elsewhere(log);
   const Result<std::string> recorded = recorded_asset_id(options.log);
   if (!recorded) return fail(recorded.error());
   log.asset_id = *recorded;

@@ -12,6 +12,7 @@
 #include "sealwatch/estimation/cylinder_circuit.hpp"
 #include "sealwatch/model/plant_description.hpp"
 #include "services/cli/commands.hpp"
+#include "services/cli/fit_table.hpp"
 #include "services/cli/recordings.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
@@ -158,41 +159,21 @@ void print_json(const AssetConfig& asset, const std::vector<std::string>& record
   std::printf("%s\n", json.dump(1).c_str());
 }
 
-/// `recording`: of a parameter that each recording has of its own.
-struct ParameterRow {
-  const EstimatedParameter& parameter;
-  std::string recording = {};
-};
-
-void print_parameters(const std::vector<ParameterRow>& rows) {
-  int width = 18;
-  for (const ParameterRow& row : rows) width = std::max(width, static_cast<int>(row.parameter.name.size()));
-  std::printf("\n  %-*s %14s    %-16s %s\n", width, "parameter", "value", "std. error", "unit");
-  for (const auto& [parameter, recording] : rows) {
-    const std::string error = std::isfinite(parameter.std_error) ? number(parameter.std_error, 2) : "not identifiable";
-    std::printf("  %-*s %14s  ± %-16s %-12s%s%s\n", width, parameter.name.c_str(), number(parameter.value, 5).c_str(),
-                error.c_str(), parameter.unit.c_str(), recording.c_str(), parameter.at_bound ? "  at its bound" : "");
-  }
-}
-
 void print_text(const AssetConfig& asset, const std::vector<std::string>& recordings, const FitResult& fit) {
   std::printf("%s, model %s, %s: %s\n", asset.asset_id.c_str(), fit.report.model.c_str(),
               count_of(recordings.size(), "recording").c_str(),
               fit.report.admissible ? "admissible" : "NOT admissible");
   for (const std::string& reason : fit.report.reasons) std::printf("  - %s\n", wrapped(reason, 110, 4).c_str());
   if (fit.report.channels.empty()) return;  // no simulation came to its end: there is nothing to show
-  std::vector<ParameterRow> rows;
+  std::vector<EstimateRow> rows;
   for (const EstimatedParameter& parameter : fit.report.parameters)
     if (parameter.free) rows.push_back({parameter});
   for (std::size_t k = 0; k < fit.loads.size(); ++k)
     if (fit.loads.size() > 1) rows.push_back({fit.loads[k], std::filesystem::path(recordings[k]).filename().string()});
   if (!fit.report.admissible && !rows.empty())
     std::printf("\n  Where the search ended, for comparison; these values do not describe the actuator:\n");
-  print_parameters(rows);
-  std::printf("\n  %-22s %10s %10s %12s %14s\n", "channel", "rms/noise", "NRMSE %", "whiteness p", "independence p");
-  for (const ChannelFit& channel : fit.report.channels)
-    std::printf("  %-22s %10.3f %10.2f %12.3g %14.3g\n", channel.channel.c_str(), channel.noise_normalised_rms,
-                channel.nrmse_percent, channel.whiteness_p, channel.independence_p);
+  std::printf("\n%s", estimates_table(rows).c_str());
+  std::printf("\n%s", channels_table(fit.report.channels).c_str());
   std::printf("\n  %s\n", wrapped(fit.report.termination, 110, 2).c_str());
   if (!fit.report.admissible)
     std::printf("\n  Where other tests of this actuator end alike, the model lacks something: sealwatch explain\n");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <optional>
 #include <set>
 
@@ -13,6 +14,8 @@
 #include "services/common/recording/log_reader.hpp"
 #include "services/common/recording/mat_reader.hpp"
 #include "services/common/recording/recording_file.hpp"
+#include "services/common/recording/vector_file.hpp"
+#include "services/common/text/numbers.hpp"
 #include "services/common/units/unit_conversion.hpp"
 
 namespace sealwatch::cli {
@@ -51,11 +54,14 @@ Result<Offer> offer_of_vectors(const std::string& file) {
   if (!vectors) return fail(vectors.error());
   Offer offer;
   offer.text = false;
+  offer.columns = offered_vectors(*vectors, {});
   for (const MatVariable& vector : *vectors) {
-    if (vector.is_complex) continue;
-    offer.columns.push_back({vector.name.substr(vector.name.rfind('/') + 1), vector.unit});
-    offer.cells.emplace_back();  // numbers all
-    offer.rows.emplace_back();
+    std::vector<std::string>& cells = offer.cells.emplace_back();
+    std::vector<std::size_t>& stand_in = offer.rows.emplace_back();
+    for (std::size_t row = 0; row < std::min(vector.values.size(), kRowsLookedAt); ++row)
+      if (!std::isnan(vector.values[row]))
+        cells.push_back(text::exact(vector.values[row])), stand_in.push_back(row + 1);
+    if (!vector.rule.empty()) cells.emplace_back(vector.rule), stand_in.push_back(1);  // no number
   }
   return offer;
 }
@@ -76,9 +82,9 @@ bool rises(const std::vector<double>& numbers) {
   return numbers.size() > 1 && std::ranges::is_sorted(numbers) && numbers.back() > numbers.front();
 }
 
-/// Days since 1899-12-30 of our time, not seconds: some ten thousands, and a test is a small part of one.
-bool are_excel_days(const std::vector<double>& numbers) {
-  return rises(numbers) && numbers.front() > 20000.0 && numbers.back() < 80000.0 &&
+/// Days of our time since `begin`, not seconds: some ten thousands, and a test is a small part of one.
+bool are_days_since(double begin, const std::vector<double>& numbers) {
+  return rises(numbers) && numbers.front() > begin + 20000.0 && numbers.back() < begin + 80000.0 &&
          numbers.back() - numbers.front() < 0.5;
 }
 
@@ -115,7 +121,9 @@ std::optional<std::size_t> likely_time_column(const Offer& offer) {
 std::string time_unit(const Offer& offer, std::size_t column) {
   if (std::string format = time_format_of(offer.cells[column]); !format.empty()) return format;
   const std::vector<double> numbers = numbers_of(offer.cells[column], offer.layout.decimal);
-  if (are_excel_days(numbers)) return "excel";
+  constexpr double kDatenumOfExcel = 693960.0;
+  if (are_days_since(0.0, numbers)) return "excel";
+  if (are_days_since(kDatenumOfExcel, numbers)) return "datenum";
   if (std::string said = unit_of(offer.columns[column]); !said.empty()) return said;
   if (std::string said = unit_of_time(offer.columns[column]); !said.empty()) return said;
   for (const auto& [unit, in_s] : {std::pair{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}})  // those since 1970 are large
@@ -127,9 +135,9 @@ std::string time_unit(const Offer& offer, std::size_t column) {
 
 bool has_numbers(const Offer& offer, std::size_t column) {
   const std::vector<std::string>& cells = offer.cells[column];
-  return (!offer.text || !cells.empty()) && std::ranges::all_of(cells, [&](const std::string& cell) {
-           return parse_number(cell, offer.layout.decimal).has_value();
-         });
+  return !cells.empty() && std::ranges::all_of(cells, [&](const std::string& cell) {
+    return parse_number(cell, offer.layout.decimal).has_value();
+  });
 }
 
 Result<Offer> offer_of(const std::string& file, const LogLayout& given) {
@@ -147,6 +155,8 @@ std::string name_of_column(const Offer& offer, std::size_t column) {
   const std::string& text = offer.columns[column].text;
   return std::ranges::count(offer.columns, text, &OfferedColumn::text) > 1 ? place_name(column) : text;
 }
+
+bool has_time(const Offer& offer) { return likely_time_column(offer).has_value(); }
 
 std::size_t time_column(const Offer& offer) { return likely_time_column(offer).value_or(0); }
 

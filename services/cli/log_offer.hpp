@@ -28,6 +28,8 @@ struct Offer {
 [[nodiscard]] std::string name_of_column(const Offer& offer, std::size_t column);
 
 /// The column called time, t, Timestamp, Zeit or Date; else the first whose cells are times; else the first that rises.
+[[nodiscard]] bool has_time(
+    const Offer& offer);  ///< whether one of these is there; else the first column stands for it
 [[nodiscard]] std::size_t time_column(const Offer& offer);
 [[nodiscard]] ColumnMapping guess_time(const Offer& offer);
 

@@ -70,7 +70,8 @@ std::string content(const TestWindow& m) {
 std::string content(const TestFeatures& m) {
   std::string text;
   for (const Quantity& feature : m.features)
-    text += (text.empty() ? "" : ", ") + feature.name + " " + number(feature.value, 3) + " " + feature.unit;
+    text +=
+        (text.empty() ? "" : ", ") + text::in_words(feature.name) + " " + text::readable(feature.value, feature.unit);
   return text;
 }
 std::string content(const StateReport& m) {

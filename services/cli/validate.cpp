@@ -10,6 +10,7 @@
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/cli/validate_page.hpp"
+#include "services/common/text/readable.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -54,14 +55,15 @@ void print_text(const AssetConfig& asset, const ModelValidation& validation, con
               verdict_in_words(validation));
   for (const auto* list : {&validation.reasons, &validation.remarks})
     for (const std::string& reason : *list) std::printf("  - %s\n", wrapped(reason, 110, 4).c_str());
-  std::printf("  %-34s %-22s %9s %10s %12s %14s\n", "recording", "channel", "NRMSE %", "rms/noise", "whiteness p",
+  std::printf("  %-34s %-22s %9s %10s   %-13s %s\n", "recording", "channel", "NRMSE %", "rms/noise", "whiteness p",
               "independence p");
   for (const RecordingValidation& recording : validation.recordings)
     for (const ChannelValidation& channel : recording.channels)
-      std::printf("  %-34s %-22s %9.2f %10.3g %12.3g %14.3g\n",
+      std::printf("  %-34s %-22s %9.2f %10.3g   %s %s\n",
                   std::filesystem::path(recording.recording).filename().string().c_str(), channel.fit.channel.c_str(),
-                  channel.fit.nrmse_percent, channel.fit.noise_normalised_rms, channel.fit.whiteness_p,
-                  channel.fit.independence_p);
+                  channel.fit.nrmse_percent, channel.fit.noise_normalised_rms,
+                  padded(text::p_value_text(channel.fit.whiteness_p), 13).c_str(),
+                  text::p_value_text(channel.fit.independence_p).c_str());
   if (const std::string next = next_step(validation); !next.empty()) std::printf("%s\n", next.c_str());
   std::printf("wrote report.html and validation.json to %s\n", directory.c_str());
 }

@@ -24,5 +24,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   const auto result = sealwatch::read_mat(file, plant);
   if (result) sealwatch::check(result->samples);
+  (void)sealwatch::read_mat_vectors(file);  // structs and texts too
   return 0;
 }

@@ -23,6 +23,10 @@ struct AdmissibilityOptions {
   [[nodiscard]] Status validate() const;
 };
 
+/// What speaks against a fit by this channel alone.
+[[nodiscard]] std::vector<std::string> reasons_of_channel(const ChannelFit& channel,
+                                                          const AdmissibilityOptions& options = {});
+
 /// Sets `admissible` and adds the reasons against it, in words with numbers, to those that already stand in `report`.
 void judge_admissibility(FitReport& report, const AdmissibilityOptions& options = {});
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "sealwatch/core/leap_second.hpp"
 #include "services/common/text/format.hpp"
 
 namespace sealwatch {
@@ -107,6 +108,9 @@ Result<UtcTime> parse_utc(std::string_view text) {
     if (!take_number(rest, 2, hour) || !take(rest, ':') || !take_number(rest, 2, minute)) return not_a_time(text);
     if (take(rest, ':') && !take_number(rest, 2, second)) return not_a_time(text);
     if (!take_fraction(rest, nanoseconds) || !take_zone(rest, zone_seconds) || !rest.empty()) return not_a_time(text);
+    if (hour < 24 && minute < 60 && second == 60)
+      return fail(
+          Error{.file = {}, .place = {}, .value = std::string(text), .rule = kLeapSecond, .advice = kLeapSecondAdvice});
     if (hour > 23 || minute > 59 || second > 59) return not_a_time(text);
   }
   const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();

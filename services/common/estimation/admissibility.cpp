@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "sealwatch/model/plant_description.hpp"
 #include "services/common/text/numbers.hpp"
+#include "services/common/text/readable.hpp"
 
 namespace sealwatch {
 namespace {
@@ -16,15 +18,21 @@ double attainable_nrmse_percent(const ChannelFit& channel) {
   return 100.0 - (100.0 - channel.nrmse_percent) / channel.noise_normalised_rms;
 }
 
-void judge_channel(const ChannelFit& channel, const AdmissibilityOptions& options, std::vector<std::string>& reasons) {
+}  // namespace
+
+std::vector<std::string> reasons_of_channel(const ChannelFit& channel, const AdmissibilityOptions& options) {
+  std::vector<std::string> reasons;
   if (!(channel.noise_normalised_rms <= options.largest_noise_normalised_rms))
-    reasons.push_back("misfit of " + channel.channel + " is " + text::significant(channel.noise_normalised_rms) +
+    reasons.push_back("misfit of " + channel.channel + " is " + text::in_sentence(channel.noise_normalised_rms) +
                       " times its noise (at most " + text::significant(options.largest_noise_normalised_rms) + ")");
   if (channel.nrmse_percent < options.smallest_nrmse_percent &&
       attainable_nrmse_percent(channel) >= options.attainable_nrmse_percent)
-    reasons.push_back("only " + text::significant(channel.nrmse_percent) + " % of the course of " + channel.channel +
+    reasons.push_back("only " + text::in_sentence(channel.nrmse_percent) + " % of the course of " + channel.channel +
                       " is reproduced (at least " + text::significant(options.smallest_nrmse_percent) + " %)");
+  return reasons;
 }
+
+namespace {
 
 void judge_resistance(const EstimatedParameter& parameter, const AdmissibilityOptions& options,
                       std::vector<std::string>& reasons) {
@@ -77,13 +85,14 @@ void judge_admissibility(FitReport& report, const AdmissibilityOptions& options)
   if (report.channels.empty())
     report.reasons.emplace_back(
         "no channel shows its noise, so nothing was judged: give noise_std in the sidecar or under sensors");
-  for (const ChannelFit& channel : report.channels) judge_channel(channel, options, report.reasons);
+  for (const ChannelFit& channel : report.channels)
+    std::ranges::move(reasons_of_channel(channel, options), std::back_inserter(report.reasons));
   const std::optional<ConditionSetting>& seal = seal_of(report.model);
   bool has_resistance = false;
   for (const EstimatedParameter& parameter : report.parameters) {
     if (parameter.at_bound)
-      report.reasons.push_back(parameter.name + " ended at its bound " + text::significant(parameter.value) + " " +
-                               parameter.unit);
+      report.reasons.push_back(parameter.name + " ended at its bound " +
+                               text::with_unit(parameter.value, parameter.unit));
     if (!seal || parameter.name != seal->parameter || !parameter.free) continue;
     has_resistance = true;
     if (!parameter.at_bound) judge_resistance(parameter, options, report.reasons);

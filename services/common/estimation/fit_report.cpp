@@ -8,6 +8,7 @@
 #include "sealwatch/estimation/residual_statistics.hpp"
 #include "services/common/estimation/interpolation_error.hpp"
 #include "services/common/text/numbers.hpp"
+#include "services/common/text/readable.hpp"
 
 namespace sealwatch {
 namespace {
@@ -300,11 +301,11 @@ JointFit report_fit(const AssetConfig& asset, const PemProblem& problem, const P
     fit.report.load_factor = fit.recordings.front().load.value;
   if (uncertainty.inflation > 1.0)
     fit.report.termination +=
-        "; residuals are coloured, standard errors raised by up to " + text::significant(uncertainty.inflation);
+        "; residuals are coloured, standard errors raised by up to " + text::in_sentence(uncertainty.inflation);
   if (uncertainty.by_input > 1.0)
     fit.report.termination +=
         "; what the input does between its samples is not recorded, standard errors raised by up to " +
-        text::significant(uncertainty.by_input);
+        text::in_sentence(uncertainty.by_input);
   if (const std::string names = unidentified(fit.report.parameters); !names.empty())
     fit.report.termination += "; not identifiable from these channels: " + names;
   return fit;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "sealwatch/estimation/actuator_fit.hpp"
@@ -102,6 +103,8 @@ Result<std::vector<TimeSeries>> fit_and_simulate(const AssetConfig& asset, const
   if (joint.recordings.size() != recordings.size())
     return fail(joint.report.reasons.empty() ? "no fit could be made" : joint.report.reasons.front());
   validation.reasons = joint.report.reasons;
+  for (const ChannelFit& channel : joint.report.channels)  // judge() says it of each recording
+    for (const std::string& reason : reasons_of_channel(channel)) std::erase(validation.reasons, reason);
   std::vector<TimeSeries> simulated;
   for (RecordingFit& fit : joint.recordings) simulated.push_back(std::move(fit.simulated));
   return simulated;
@@ -147,6 +150,7 @@ void judge(ModelValidation& validation) {
       found->largest = channel.fit.noise_normalised_rms;
       found->worst = recording.recording;
     }
+  std::ranges::stable_sort(misfits, std::greater{}, &Misfit::largest);
   for (const Misfit& misfit : misfits) {
     if (misfit.beyond == 0) {
       if (std::string remark = remark_on(misfit); !remark.empty()) validation.remarks.push_back(std::move(remark));

@@ -93,7 +93,7 @@ class DerivativeCheck {
   explicit DerivativeCheck(const FmuBlock& block) : block_(block) {
     for (std::size_t k = 0; k < block.states.size(); ++k)
       state_steps_.push_back(1e-7 * block.state_sizes[k] / std::abs(block.states[k].factor));
-    input_steps_.assign(block.input_start.size(), 1e-7);
+    for (const double size : block.input_sizes) input_steps_.push_back(1e-7 * size);
   }
 
   /// What the unit says, or differences over steps that are `wider` times as large, at points about its start; empty
@@ -163,7 +163,7 @@ class DerivativeCheck {
         point.states[k] +=
             away * (1.0 + 0.1 * static_cast<double>(k)) * block_.state_sizes[k] / block_.states[k].factor;
       for (std::size_t k = 0; k < block_.setup.continuous_inputs; ++k)
-        point.inputs[k] += 0.1 * away * std::max(1.0, std::abs(point.inputs[k]));
+        point.inputs[k] += 0.1 * away * std::max(block_.input_sizes[k], std::abs(point.inputs[k]));
       points_.push_back(std::move(point));
     }
   }

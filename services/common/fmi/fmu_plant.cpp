@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <map>
 
@@ -161,6 +162,7 @@ class Builder {
     block_.setup = *setup;
     block_.start_time_s = description_->start_time_s.value_or(0.0);
     block_.inputs = ports(inputs, selection.inputs, block_.input_start);
+    block_.input_sizes = nominals(selection.inputs);
     block_.parameters = ports(parameters, selection.parameters, block_.parameter_start);
     std::vector<double> unused;
     block_.variables = ports(outputs, selection.outputs, unused);
@@ -227,6 +229,17 @@ class Builder {
     result.reserve(elements.size());
     for (const Element& element : elements)
       result.push_back({.place = first[element.variable] + element.element, .unit = {}});
+    return result;
+  }
+
+  // Of each element of whole variables; 1 where none is said, as FMI has it.
+  [[nodiscard]] std::vector<double> nominals(const std::vector<std::size_t>& whole) const {
+    std::vector<double> result;
+    for (const std::size_t variable : whole) {
+      const Variable& of = description_->variables[variable];
+      const double size = std::abs(of.nominal.value_or(1.0));
+      result.insert(result.end(), of.size, std::isfinite(size) && size > 0.0 ? size : 1.0);
+    }
     return result;
   }
 

@@ -73,7 +73,8 @@ Status RunningBlock::begin_process(double time_s, std::span<const BlockStart> st
   if (!process) return fail(process.error());
   processes_.push_back(std::move(*process));
   const std::vector<double> differences = state_steps(block_);
-  const std::vector<double> input_differences(block_.input_start.size(), kDifference);
+  std::vector<double> input_differences = block_.input_sizes;
+  for (double& step : input_differences) step *= kDifference;
   std::vector<double> inputs, parameters;
   for (const BlockStart& start : starts) {
     append(block_.input_start, block_.inputs, start.inputs, inputs);

@@ -7,6 +7,7 @@
 #include <ctime>
 #include <functional>
 
+#include "sealwatch/core/leap_second.hpp"
 #include "sealwatch/signal/statistics.hpp"
 #include "services/common/recording/columns.hpp"
 #include "services/common/units/unit_conversion.hpp"
@@ -15,7 +16,8 @@ namespace sealwatch {
 namespace {
 
 constexpr std::size_t kLongestNumber = 60;
-constexpr double kExcelDayOf1970 = 25569.0;  // days from 1899-12-30 to 1970-01-01
+constexpr double kExcelDayOf1970 = 25569.0;   // days from 1899-12-30 to 1970-01-01
+constexpr double kDatenumOfExcel = 693960.0;  // MATLAB's day number of 1899-12-30
 constexpr std::int64_t kNanoseconds = 1'000'000'000;
 
 /// ".25" or ",25" as nanoseconds; nothing where something else follows.
@@ -68,7 +70,11 @@ std::string_view trim(std::string_view text) {
   return text;
 }
 
-bool holds_no_value(std::string_view cell) { return cell.find_first_of("0123456789") == std::string_view::npos; }
+bool holds_no_value(std::string_view cell) {
+  const bool is_word = (trim(cell).size() > 1 && trim(cell).front() == '#' && !is_digit(trim(cell)[1])) ||
+                       cell.find(".#") != std::string_view::npos;
+  return is_word || cell.find_first_of("0123456789") == std::string_view::npos;
+}
 
 bool has_thousands(std::string_view text, char decimal) {
   constexpr std::size_t kGroup = 3;
@@ -86,6 +92,13 @@ Result<double> parse_number(std::string_view text, char decimal) {
   text = trim(text);
   if (text.empty()) return fail("the cell is empty", "leave out the whole row of a missing sample");
   if (text.front() == '+') text.remove_prefix(1);
+  constexpr std::string_view kMinus = "\xE2\x88\x92";  // U+2212, as spreadsheets write it in some languages
+  std::array<char, kLongestNumber> with_minus{};
+  if (text.starts_with(kMinus) && text.size() <= with_minus.size()) {
+    with_minus[0] = '-';
+    std::ranges::copy(text.substr(kMinus.size()), with_minus.begin() + 1);
+    text = std::string_view(with_minus.data(), text.size() - kMinus.size() + 1);
+  }
   std::array<char, kLongestNumber> with_point{};
   if (decimal != '.') {
     if (text.size() > with_point.size() || text.find('.') != std::string_view::npos) return fail("must be a number");
@@ -96,6 +109,12 @@ Result<double> parse_number(std::string_view text, char decimal) {
       rest.remove_prefix(1);
     }
     text = std::string_view(with_point.data(), text.size());
+  }
+  std::array<char, kLongestNumber> with_e{};
+  if (const std::size_t at = text.find_first_of("Dd"); at != std::string_view::npos && text.size() <= with_e.size()) {
+    std::ranges::copy(text, with_e.begin());  // Fortran's double precision: 1.5D+02
+    with_e[at] = 'E';
+    text = std::string_view(with_e.data(), text.size());
   }
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -115,6 +134,7 @@ Result<UtcTime> parse_pattern(std::string_view cell, const std::string& pattern)
   const char* const rest = strptime(text.c_str(), pattern.c_str(), &parts);
   const auto fraction = rest != nullptr ? fraction_of_a_second(rest) : std::nullopt;
   if (!fraction) return fail("must be a time as " + pattern + " describes it");
+  if (parts.tm_sec > 59) return fail(kLeapSecond, kLeapSecondAdvice);
   if (parts.tm_year < -200 || parts.tm_year > 350) return fail("must be a time of the years 1700 to 2250");
   const std::int64_t seconds = timegm(&parts) - parts.tm_gmtoff;
   return UtcTime{seconds * kNanoseconds + inner + *fraction};
@@ -124,8 +144,16 @@ Result<TimeFormat> TimeFormat::of(std::string_view unit) {
   TimeFormat format;
   if (unit == "iso8601") {
     format.kind_ = Kind::iso8601;
-  } else if (unit == "excel") {
+  } else if (unit == "excel" || unit == "datenum") {
     format.kind_ = Kind::excel;
+    format.days_before_excel_ = unit == "datenum" ? kDatenumOfExcel : 0.0;
+  } else if (const std::size_t since = unit.find(" since "); since != std::string_view::npos) {
+    Result<TimeFormat> counted = of(unit.substr(0, since));
+    const Result<UtcTime> begin = parse_utc(trim(unit.substr(since + 7)));
+    if (!counted || !begin)
+      return fail(error_at({}, unit, "must read as 'days since 2031-04-12', with a unit of time and a UTC time"));
+    counted->base_ = *begin;
+    return counted;
   } else if (unit.find('%') != std::string_view::npos) {
     format.kind_ = Kind::pattern;
     format.pattern_ = unit;
@@ -142,7 +170,7 @@ Result<TimeFormat> TimeFormat::of(std::string_view unit) {
 Result<UtcTime> TimeFormat::moment(std::string_view cell, char decimal) const {
   if (kind_ == Kind::excel) {
     const Result<double> days = parse_number(cell, decimal);
-    return days ? from_excel(*days) : fail(days.error());
+    return days ? from_excel(*days - days_before_excel_) : fail(days.error());
   }
   if (kind_ == Kind::pattern) return parse_pattern(cell, pattern_);
   std::string text(trim(cell));
@@ -157,18 +185,40 @@ Result<double> TimeFormat::seconds(std::string_view cell, char decimal) {
     if (!number && is_clock(cell))
       return fail(number.error().rule,
                   "a clock or a date needs its form as unit in the map: iso8601, or a pattern as '%d.%m.%Y %H:%M:%S'");
+    if (!number && number.error().advice.empty())
+      return fail(number.error().rule,
+                  "take the row out where it is no sample, as that of a summary or another header");
     return number ? Result<double>(to_s_.to_si(*number)) : number;
   }
   const Result<UtcTime> time = moment(cell, decimal);
   if (!time) return fail(time.error().rule, time.error().advice);
-  if (!base_) base_ = *time;
-  return static_cast<double>(time->nanoseconds - base_->nanoseconds) * 1e-9;
+  const UtcTime now = has_date() ? *time : past_midnight(*time);
+  if (!base_) base_ = now;
+  return static_cast<double>(now.nanoseconds - base_->nanoseconds) * 1e-9;
+}
+
+Status TimeFormat::scale_by(double scale, double offset) {
+  if (scale == 1.0 && offset == 0.0) return {};
+  if (kind_ != Kind::number)
+    return fail("is a clock, which takes no scale and no offset", "give the numbers' unit: s, ms");
+  to_s_.offset += to_s_.scale * offset;
+  to_s_.scale *= scale;
+  return {};
+}
+
+/// A time counted from a test's start goes back by all of its length; by nearly a day goes the clock of a wall.
+UtcTime TimeFormat::past_midnight(UtcTime time) {
+  constexpr std::int64_t kDay = 86400 * kNanoseconds, kLongestStep = 60 * kNanoseconds;
+  time.nanoseconds += midnights_ * kDay;
+  if (last_ && time.nanoseconds - last_->nanoseconds < kLongestStep - kDay) ++midnights_, time.nanoseconds += kDay;
+  last_ = time;
+  return time;
 }
 
 Result<double> TimeFormat::seconds(double number) {
   if (kind_ == Kind::number) return to_s_.to_si(number);
   if (kind_ != Kind::excel) return fail("must be text for a time of this form", "give its unit: s, ms, ns or excel");
-  const Result<UtcTime> time = from_excel(number);
+  const Result<UtcTime> time = from_excel(number - days_before_excel_);
   if (!time) return fail(time.error());
   if (!base_) base_ = *time;
   return static_cast<double>(time->nanoseconds - base_->nanoseconds) * 1e-9;
@@ -192,9 +242,10 @@ std::optional<UtcTime> TimeFormat::clock(double seconds) const {
   return base_ ? std::optional(add_seconds(*base_, seconds)) : std::nullopt;
 }
 
-std::optional<UtcTime> TimeFormat::utc(double seconds) const {
-  const bool has_date = kind_ != Kind::pattern || pattern_.find_first_of("djFDxcs") != std::string::npos;
-  return has_date ? clock(seconds) : std::nullopt;
+bool TimeFormat::has_date() const {
+  return kind_ != Kind::pattern || pattern_.find_first_of("djFDxcs") != std::string::npos;
 }
+
+std::optional<UtcTime> TimeFormat::utc(double seconds) const { return has_date() ? clock(seconds) : std::nullopt; }
 
 }  // namespace sealwatch

@@ -18,7 +18,8 @@ namespace sealwatch {
 /// The finite number that `text` is, or the rule that it breaks. `decimal` is '.' or ','.
 [[nodiscard]] Result<double> parse_number(std::string_view text, char decimal = '.');
 
-/// Whether a cell holds no value: it is empty, or has no digit, as NaN, ---, #N/A and Bad.
+/// Whether a cell holds no value: it is empty, has no digit, as NaN, --- and Bad, or is one of the words for it that have
+/// one: #DIV/0! and 1.#INF.
 [[nodiscard]] bool holds_no_value(std::string_view cell);
 
 /// Whether `text` would be a number without its separators of thousands: 1,234.5 or, with a decimal comma, 1.234,5.
@@ -27,13 +28,16 @@ namespace sealwatch {
 /// How a log's time column counts.
 class TimeFormat {
  public:
-  /// `unit`: "iso8601", "excel" (days since 1899-12-30), a pattern of strptime such as "%d.%m.%Y %H:%M:%S" (fractions
+  /// `unit`: "iso8601", "excel" (days since 1899-12-30), "datenum" (MATLAB's days), "days since 2031-04-12", a pattern of strptime such as "%d.%m.%Y %H:%M:%S" (fractions
   /// of a second may follow; without a zone UTC), or any unit of time.
   [[nodiscard]] static Result<TimeFormat> of(std::string_view unit);
 
   /// Whether it tells the hour and the day, so that the recording's start is known.
   [[nodiscard]] bool is_absolute() const { return kind_ != Kind::number; }
-  /// Seconds of `cell`: as the log counts them; of an absolute time those since the first cell that was asked.
+  /// `scale` number + `offset` is in the format's unit: of a count of samples, say. An Error where it is a clock.
+  [[nodiscard]] Status scale_by(double scale, double offset);
+  /// Seconds of `cell`: as the log counts them; of an absolute time those since the first cell that was asked. A clock
+  /// without a day that passes midnight goes on.
   [[nodiscard]] Result<double> seconds(std::string_view cell, char decimal);
   /// The same of a number; an Error where the format wants text.
   [[nodiscard]] Result<double> seconds(double number);
@@ -45,11 +49,16 @@ class TimeFormat {
  private:
   enum class Kind { number, iso8601, excel, pattern };
   [[nodiscard]] Result<UtcTime> moment(std::string_view cell, char decimal) const;
+  [[nodiscard]] bool has_date() const;
+  [[nodiscard]] UtcTime past_midnight(UtcTime time);
 
   Kind kind_ = Kind::number;
   UnitConversion to_s_;
+  double days_before_excel_ = 0.0;
   std::string pattern_;
   std::optional<UtcTime> base_;
+  std::optional<UtcTime> last_;  ///< of a clock without a day
+  std::int64_t midnights_ = 0;   ///< that it has passed
 };
 
 inline constexpr const char* kOneTime = "two times fall on one, as a number has no more than 16 digits";

@@ -60,9 +60,12 @@ void put_answer(std::FILE* to, const Result<Variables>& answer) {
   put(to, static_cast<std::uint64_t>(answer.has_value()));
   if (answer) {
     put(to, static_cast<std::uint64_t>(answer->size()));
-    for (const MatVariable& variable : *answer)
-      put(to, variable.name), put(to, variable.values), put(to, variable.unit),
-          put(to, static_cast<std::uint64_t>(variable.is_complex));
+    for (const MatVariable& variable : *answer) {
+      for (const std::string* text :
+           {&variable.name, &variable.unit, &variable.scaling, &variable.rule, &variable.advice})
+        put(to, *text);
+      put(to, variable.values);
+    }
   } else {
     const Error& error = answer.error();
     for (const std::string* text : {&error.file, &error.place, &error.value, &error.rule, &error.advice})
@@ -83,10 +86,9 @@ std::optional<Result<Variables>> get_answer(std::FILE* from) {
   Variables variables;
   for (std::uint64_t k = 0; k < count; ++k) {
     MatVariable& variable = variables.emplace_back();
-    std::uint64_t is_complex = 0;
-    if (!get(from, variable.name) || !get(from, variable.values) || !get(from, variable.unit) || !get(from, is_complex))
-      return std::nullopt;
-    variable.is_complex = is_complex != 0;
+    for (std::string* text : {&variable.name, &variable.unit, &variable.scaling, &variable.rule, &variable.advice})
+      if (!get(from, *text)) return std::nullopt;
+    if (!get(from, variable.values)) return std::nullopt;
   }
   return variables;
 }

@@ -14,8 +14,10 @@ namespace sealwatch {
 struct MatVariable {
   std::string name;
   std::vector<double> values;
-  std::string unit = {};    ///< an attribute of HDF5; MATLAB has none
-  bool is_complex = false;  ///< of MATLAB: then it has no values here
+  std::string unit = {};     ///< an attribute of HDF5; MATLAB has none
+  std::string scaling = {};  ///< "gain 0.01": an attribute that says they are scaled, and was not followed
+  std::string rule = {};     ///< which it breaks, so that it has no values here
+  std::string advice = {};
 };
 
 /// What `read` returns, called in a child process of 4 GiB more memory than this one has and two minutes of processor

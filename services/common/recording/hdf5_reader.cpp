@@ -5,78 +5,74 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <limits>
 #include <mutex>
-#include <numeric>
+#include <utility>
 
 #include "sealwatch/core/file.hpp"
 #include "services/common/recording/columns.hpp"
+#include "services/common/recording/hdf5_attributes.hpp"
+#include "services/common/recording/mat_container.hpp"
 #include "services/common/recording/recording_file.hpp"
 
 namespace sealwatch {
 namespace {
 
-constexpr std::size_t kLongestName = 1000;
 constexpr std::size_t kMostObjects = 10'000;
-
-/// An identifier of HDF5, closed at its end.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  [[nodiscard]] hid_t get() const { return id_; }
-  explicit operator bool() const { return id_ >= 0; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
+constexpr hsize_t kMostColumns = 256;  // as channels of a test
 
 bool is_number(hid_t type) {
   const H5T_class_t kind = H5Tget_class(type);
   return kind == H5T_INTEGER || kind == H5T_FLOAT;
 }
 
-/// The length of a data set that is a vector; 0 where it is none.
-std::size_t vector_length(hid_t dataset) {
-  const Handle space(H5Dget_space(dataset), &H5Sclose);
-  if (!space || H5Sget_simple_extent_type(space.get()) != H5S_SIMPLE) return 0;
+/// Samples and columns of a data set of one dimension, or of two: samples are then along the longer.
+struct Shape {
+  std::size_t samples = 0;  ///< 0: it is no vector and no matrix
+  std::size_t columns = 1;
+  bool columns_first = false;  ///< all samples of a column stand together
+};
+
+Shape shape_of(hid_t dataset) {
+  const Hdf5Handle space(H5Dget_space(dataset), &H5Sclose);
+  if (!space || H5Sget_simple_extent_type(space.get()) != H5S_SIMPLE) return {};
   const int rank = H5Sget_simple_extent_ndims(space.get());
-  if (rank < 1 || rank > H5S_MAX_RANK) return 0;
+  if (rank < 1 || rank > H5S_MAX_RANK) return {};
   std::array<hsize_t, H5S_MAX_RANK> sizes{};
   H5Sget_simple_extent_dims(space.get(), sizes.data(), nullptr);
   const auto begin = sizes.begin(), end = sizes.begin() + rank;
   const hsize_t longest = *std::max_element(begin, end);
   const auto others = std::count_if(begin, end, [](hsize_t size) { return size != 1; });
-  return others <= 1 ? static_cast<std::size_t>(longest) : 0;
+  if (others <= 1) return {.samples = static_cast<std::size_t>(longest)};
+  if (rank != 2 || std::min(sizes[0], sizes[1]) > kMostColumns || sizes[0] == sizes[1] ||
+      std::min(sizes[0], sizes[1]) == 0 || longest > kMostNumbers)
+    return {};
+  const bool columns_first = sizes[0] < sizes[1];
+  return {.samples = static_cast<std::size_t>(longest),
+          .columns = static_cast<std::size_t>(std::min(sizes[0], sizes[1])),
+          .columns_first = columns_first};
 }
 
 /// Whether the data of a data set is that of another file, which may be any on this machine, a pipe among them.
 bool lies_elsewhere(hid_t dataset) {
-  const Handle made(H5Dget_create_plist(dataset), &H5Pclose);
+  const Hdf5Handle made(H5Dget_create_plist(dataset), &H5Pclose);
   return !made || H5Pget_layout(made.get()) == H5D_VIRTUAL || H5Pget_external_count(made.get()) > 0;
 }
 
-std::string text_attribute(hid_t object, const char* name) {
-  if (H5Aexists(object, name) <= 0) return {};
-  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), &H5Aclose);
-  const Handle type(H5Aget_type(attribute.get()), &H5Tclose);
-  if (!attribute || !type || H5Tget_class(type.get()) != H5T_STRING) return {};
-  const Handle space(H5Aget_space(attribute.get()), &H5Sclose);
-  if (!space || H5Sget_simple_extent_npoints(space.get()) != 1) return {};
-  if (H5Tis_variable_str(type.get()) > 0) {
-    char* text = nullptr;
-    if (H5Aread(attribute.get(), type.get(), static_cast<void*>(&text)) < 0 || text == nullptr) return {};
-    std::string out(text, strnlen(text, kLongestName));
-    H5free_memory(text);
-    return out;
+/// The name of a compression that this machine's library does not have; "" where there is none.
+std::string unknown_filter(hid_t dataset) {
+  const Hdf5Handle made(H5Dget_create_plist(dataset), &H5Pclose);
+  const int count = made ? H5Pget_nfilters(made.get()) : 0;
+  for (int k = 0; k < count; ++k) {
+    std::array<char, 64> name{};
+    std::size_t no_values = 0;
+    unsigned flags = 0;
+    const H5Z_filter_t filter = H5Pget_filter2(made.get(), static_cast<unsigned>(k), &flags, &no_values, nullptr,
+                                               name.size() - 1, name.data(), nullptr);
+    if (filter > 0 && H5Zfilter_avail(filter) <= 0)
+      return name[0] != '\0' ? printable(name.data()) : "filter " + std::to_string(filter);
   }
-  std::string out(std::min(H5Tget_size(type.get()), kLongestName), '\0');
-  if (H5Tget_size(type.get()) > kLongestName || H5Aread(attribute.get(), type.get(), out.data()) < 0) return {};
-  return out.substr(0, out.find('\0'));
+  return {};
 }
 
 class Reader {
@@ -86,7 +82,7 @@ class Reader {
   Status status = {};
 
   void count(const char* name) {
-    if (std::strlen(name) > kLongestName)
+    if (std::strlen(name) > kLongestHdf5Name)
       status = fail(error_at({}, {}, "its groups are nested too deeply", "put the data sets into few groups"));
     else if (++objects_ > kMostObjects)
       status = fail(error_at({}, {}, "the file holds more than " + std::to_string(kMostObjects) + " objects",
@@ -94,54 +90,104 @@ class Reader {
   }
 
   void dataset(hid_t file, const char* name) {
-    const Handle data(H5Dopen2(file, name, H5P_DEFAULT), &H5Dclose);
+    const Hdf5Handle data(H5Dopen2(file, name, H5P_DEFAULT), &H5Dclose);
     if (!data) return;
     if (lies_elsewhere(data.get())) {
       status = fail(error_at("data set " + printable(name), {}, "its data lies in another file, which is not followed",
                              "copy the data into this one"));
       return;
     }
-    const Handle type(H5Dget_type(data.get()), &H5Tclose);
-    const std::size_t length = vector_length(data.get());
-    if (!type || length == 0) return;
-    std::string unit = text_attribute(data.get(), "unit");
-    if (unit.empty()) unit = text_attribute(data.get(), "units");
-    if (is_number(type.get()))
-      read(data.get(), H5T_NATIVE_DOUBLE, length, name, unit);
-    else if (H5Tget_class(type.get()) == H5T_COMPOUND)
-      table(data.get(), type.get(), length, name);
+    const Hdf5Handle type(H5Dget_type(data.get()), &H5Tclose);
+    const Shape shape = shape_of(data.get());
+    if (!type || shape.samples == 0 || std::strstr(name, "#refs#") != nullptr) return;
+    const Hdf5Attributes said = hdf5_attributes(data.get());
+    if (const MatVariable unread = why_not(type.get(), said); !unread.rule.empty()) {
+      if (shape.samples > 1) found_.push_back(unread), found_.back().name = name;
+    } else if (H5Tget_class(type.get()) == H5T_COMPOUND) {
+      table(data.get(), type.get(), shape.samples, name, said);
+    } else if (is_number(type.get()) && !said.is_matlab_empty) {
+      const bool fits = total_ + shape.samples * shape.columns <= kMostNumbers;  // a picture is passed over
+      if (shape.columns == 1 || fits) matrix(data.get(), shape, name, said);
+    }
   }
 
  private:
-  void table(hid_t data, hid_t type, std::size_t length, const std::string& name) {
-    const int count = H5Tget_nmembers(type);
-    for (int member = 0; member < count && status; ++member) {
-      const Handle kind(H5Tget_member_type(type, static_cast<unsigned>(member)), &H5Tclose);
+  /// Why no vector is read from a data set that may be taken for a channel's; no rule where one is.
+  static MatVariable why_not(hid_t type, const Hdf5Attributes& said) {
+    if (H5Tget_class(type) == H5T_STRING || said.matlab_class == "char")
+      return {.name = {},
+              .values = {},
+              .rule = "holds text, where one number for each sample is needed",
+              .advice = "store times as numbers, in s from the test's begin"};
+    if (said.is_matlab_object)
+      return {.name = {},
+              .values = {},
+              .rule = "is an object of MATLAB's class " + printable(said.matlab_class),
+              .advice = "save its vectors alone, of a timeseries Time and Data"};
+    if (H5Tget_class(type) == H5T_COMPOUND && H5Tget_nmembers(type) == 2 && H5Tget_member_index(type, "real") >= 0 &&
+        H5Tget_member_index(type, "imag") >= 0)
+      return {.name = {}, .values = {}, .rule = kIsComplex, .advice = kStoreRealPart};
+    return {};
+  }
+
+  void table(hid_t data, hid_t type, std::size_t length, const std::string& name, const Hdf5Attributes& said) {
+    const auto count = static_cast<std::size_t>(std::max(H5Tget_nmembers(type), 0));
+    for (std::size_t member = 0; member < count && status; ++member) {
+      const Hdf5Handle kind(H5Tget_member_type(type, static_cast<unsigned>(member)), &H5Tclose);
       char* const text = H5Tget_member_name(type, static_cast<unsigned>(member));
       if (text == nullptr) continue;
-      const std::string column(text, strnlen(text, kLongestName));
+      const std::string column(text, strnlen(text, kLongestHdf5Name));
       H5free_memory(text);
       if (!kind || !is_number(kind.get())) continue;
-      const Handle one(H5Tcreate(H5T_COMPOUND, sizeof(double)), &H5Tclose);
+      const Hdf5Handle one(H5Tcreate(H5T_COMPOUND, sizeof(double)), &H5Tclose);
       H5Tinsert(one.get(), column.c_str(), 0, H5T_NATIVE_DOUBLE);
-      read(data, one.get(), length, name + "/" + column, {});
+      const std::vector<double> values = read(data, one.get(), length, name);
+      if (status) add(name + "/" + column, values, said.units.size() == count ? said.units[member] : "", said);
     }
   }
 
-  void read(hid_t data, hid_t memory_type, std::size_t length, const std::string& name, const std::string& unit) {
+  /// A matrix is as many vectors as it has columns, NAME/1, NAME/2 or by their names.
+  void matrix(hid_t data, const Shape& shape, const std::string& name, const Hdf5Attributes& said) {
+    const std::vector<double> all = read(data, H5T_NATIVE_DOUBLE, shape.samples * shape.columns, name);
+    for (std::size_t column = 0; column < shape.columns && status; ++column) {
+      std::vector<double> values(shape.samples);
+      for (std::size_t k = 0; k < shape.samples; ++k)
+        values[k] = all[shape.columns_first ? column * shape.samples + k : k * shape.columns + column];
+      const std::string last = said.names.size() == shape.columns ? said.names[column] : std::to_string(column + 1);
+      std::string unit = said.units.empty() ? "" : said.units.front();
+      if (said.units.size() > 1) unit = said.units.size() == shape.columns ? said.units[column] : "";
+      add(shape.columns > 1 ? name + "/" + last : name, std::move(values), unit, said);
+    }
+  }
+
+  void add(std::string name, std::vector<double> values, std::string unit, const Hdf5Attributes& said) {
+    for (double& value : values)
+      value = std::ranges::find(said.no_values, value) == said.no_values.end()
+                  ? said.scale * value + said.offset
+                  : std::numeric_limits<double>::quiet_NaN();
+    MatVariable& vector = found_.emplace_back();
+    vector.name = std::move(name), vector.values = std::move(values), vector.unit = std::move(unit);
+    vector.scaling = said.other_scaling;
+  }
+
+  std::vector<double> read(hid_t data, hid_t memory_type, std::size_t length, const std::string& name) {
     total_ += length;
-    if (total_ > kMostNumbers) {
+    if (length > kMostNumbers || total_ > kMostNumbers) {
       status = fail(error_at("data set " + printable(name), {},
                              "the file holds more than " + std::to_string(kMostNumbers) + " numbers",
                              "one recording is one test: split the file"));
-      return;
+      return {};
     }
     std::vector<double> values(length);
-    if (H5Dread(data, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    if (H5Dread(data, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+      const std::string filter = unknown_filter(data);
       status =
-          fail(error_at("data set " + printable(name), {}, "its data cannot be read: the file is cut off or damaged"));
-    else
-      found_.push_back({name, std::move(values), unit});
+          fail(filter.empty() ? error_at("data set " + printable(name), {},
+                                         "its data cannot be read: the file is cut off or damaged")
+                              : error_at("data set " + printable(name), filter, "is a compression that is not read",
+                                         "store it with gzip, or without compression"));
+    }
+    return values;
   }
 
   std::vector<MatVariable>& found_;
@@ -158,7 +204,7 @@ herr_t visit(hid_t file, const char* name, const H5O_info_t* info, void* reader)
 
 Result<std::vector<MatVariable>> read_all(const std::string& path) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what went wrong is returned, not printed
-  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose);
+  const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose);
   if (!file) return fail("is not an HDF5 file, or it is damaged");
   std::vector<MatVariable> found;
   Reader reader(found);

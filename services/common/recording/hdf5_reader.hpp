@@ -1,7 +1,8 @@
-// Vectors of numbers in an HDF5 file: data sets of one dimension (or one row, or one column) and the members of tables.
+// Vectors of numbers in an HDF5 file: data sets of one dimension, the columns of those of two, the members of tables.
 //
-// A vector's name is its path, "run1/pressure_a"; its unit the attribute `unit` or `units`. What is no vector of real
-// numbers is passed over.
+// A vector's name is its path, "run1/pressure_a", of a matrix with the column's name or number behind it; what its
+// attributes say of the numbers is followed (hdf5_attributes.hpp). Text, objects of MATLAB and complex numbers are named
+// without values; what else is no vector of real numbers is passed over.
 #pragma once
 
 #include <string>

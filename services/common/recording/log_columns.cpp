@@ -62,7 +62,7 @@ class Mapper {
     if (!taken_.contains("time"))
       return fail(error_at("channel time", {}, "is missing and required", "name its column under channels: time"));
     for (std::size_t index = 0; index < offered_.size(); ++index)
-      if (!used_.contains(index)) out_.left_aside.push_back(offered_[index].text);
+      if (!used_.contains(index) && !offered_[index].text.empty()) out_.left_aside.push_back(offered_[index].text);
     std::ranges::sort(out_.columns, {}, &MappedColumn::index);  // in the order of the file
     return std::move(out_);
   }
@@ -133,7 +133,7 @@ class Mapper {
     Result<Column> column =
         Column{.name = channel, .si_unit = "s", .to_si = {.scale = 1.0, .offset = 0.0, .si_unit = {}}};
     if (channel == "time")
-      out_.time_unit = unit;
+      out_.time_unit = unit, out_.time_scale = mapping.scale, out_.time_offset = mapping.offset;
     else
       column = mapped(channel, si_unit_of(channel), unit, mapping);
     if (!column) return fail(column.error());
@@ -193,6 +193,16 @@ Result<std::size_t> find_offered(const std::vector<OfferedColumn>& offered, cons
   for (const OfferedColumn& column : offered)
     if (!column.text.empty()) texts.push_back(column.text);
   return fail("is not a column of this log", suggest(wanted, texts));
+}
+
+Result<TimeFormat> time_format(const MappedColumns& mapped) {
+  Result<TimeFormat> format = TimeFormat::of(mapped.time_unit);
+  if (!format)
+    return fail(error_at("channel time", mapped.time_unit, format.error().rule,
+                         "of a count of samples: {unit: s, scale: SECONDS_BETWEEN_SAMPLES}"));
+  if (const Status scaled = format->scale_by(mapped.time_scale, mapped.time_offset); !scaled)
+    return fail(error_at("channel time", mapped.time_unit, scaled.error().rule, scaled.error().advice));
+  return format;
 }
 
 Result<MappedColumns> map_columns(const std::vector<OfferedColumn>& offered, const PlantDescription& plant,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sealwatch/config/channel_map.hpp"
+#include "services/common/recording/cells.hpp"
 #include "services/common/recording/columns.hpp"
 
 namespace sealwatch {
@@ -25,7 +26,8 @@ struct MappedColumn {
 
 struct MappedColumns {
   std::vector<MappedColumn> columns;  ///< each channel once, `time` among them
-  std::string time_unit;              ///< for TimeFormat
+  std::string time_unit;              ///< for TimeFormat, as are:
+  double time_scale = 1.0, time_offset = 0.0;
   std::vector<std::string> left_aside;
   std::vector<std::string> warnings = {};  ///< of columns whose unit is another in the map than in the log
 };
@@ -39,6 +41,9 @@ struct MappedColumns {
 /// The unit at the end of a name, "t_ms", "Speed rpm", where it is one of `si_unit`'s quantity and no letter, which may be
 /// a chamber's; "%" and "counts" of any quantity, which are to be refused without a scale. "" where there is none.
 [[nodiscard]] std::string unit_at_the_end(std::string_view text, const std::string& si_unit);
+
+/// How the time column counts.
+[[nodiscard]] Result<TimeFormat> time_format(const MappedColumns& mapped);
 
 /// Errors name the channel, not the place.
 [[nodiscard]] Result<MappedColumns> map_columns(const std::vector<OfferedColumn>& offered,

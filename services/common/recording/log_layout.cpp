@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -122,6 +123,18 @@ std::string without_brackets(std::string_view text) {
   return text == "-" ? "" : as_utf8(text);
 }
 
+/// "Y_Unit_Label", "Units:", "Einheit": what a row of units is called in its first cell.
+bool is_name_of_units(std::string_view cell) {
+  std::string text(trim(cell));
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text.find("unit") != std::string::npos || text.find("einheit") != std::string::npos;
+}
+
+std::vector<std::string> without_name_of_units(std::vector<std::string> row) {
+  if (!row.empty() && is_name_of_units(row.front())) row.front().clear();
+  return row;
+}
+
 /// Whether all cells are units; or, where a name stands above each, most of them: "hh:mm:ss" is none.
 bool is_row_of_units(const std::vector<std::string>& row, const std::vector<std::string>& above, char decimal) {
   std::size_t filled = 0, units = 0, named = 0;
@@ -140,6 +153,20 @@ std::vector<std::string> filled_to(std::vector<std::string> cells, std::size_t w
   return cells;
 }
 
+/// Far above the names, too, a row of units is one where it says so: "Y_Unit_Label  Volts  mm". 0: there is none.
+std::size_t row_called_units(const Reading& reading, std::size_t header_row) {
+  for (std::size_t number = header_row; number-- > 1;) {
+    const std::vector<std::string>& row = reading.rows[number - 1];
+    if (row.size() > reading.width || row.empty() || !is_name_of_units(row.front())) continue;
+    const auto count_of = [&row](const auto& is_one) { return std::count_if(row.begin() + 1, row.end(), is_one); };
+    const auto filled = count_of([](const std::string& cell) { return !is_blank(cell); });
+    const auto units = count_of([](const std::string& cell) { return is_unit(without_brackets(cell)); });
+    const bool names_a_machine = filled < 2 && reading.width > 2;  // "Unit;A"
+    if (units > 0 && 2 * units >= filled && !names_a_machine) return number;
+  }
+  return 0;
+}
+
 /// The rows above the table. Row numbers are the editor's, 1 for the first; rows[k] is row k + 1.
 void find_header(const Reading& reading, const LogLayout& given, FoundLayout& out) {
   const auto row = [&reading](std::size_t number) -> const std::vector<std::string>& {
@@ -156,7 +183,8 @@ void find_header(const Reading& reading, const LogLayout& given, FoundLayout& ou
   const auto are_units = [&](std::size_t number) {
     if (number <= least || row(number).size() <= 1) return false;
     const std::size_t names = filled_row(number - 1);
-    return is_row_of_units(row(number), names > 0 ? row(names) : std::vector<std::string>(), reading.decimal);
+    return is_row_of_units(without_name_of_units(row(number)), names > 0 ? row(names) : std::vector<std::string>(),
+                           reading.decimal);
   };
   if (out.units_row == 0 && are_units(above)) out.units_row = above;
   const std::size_t next = above > 1 ? filled_row(above - 1) : 0, names = next > 1 ? filled_row(next - 1) : 0;
@@ -165,6 +193,57 @@ void find_header(const Reading& reading, const LogLayout& given, FoundLayout& ou
   if (out.units_row == above && above > 0) above = filled_row(above - 1);
   out.header_row = header_given ? static_cast<std::size_t>(given.header_row) : 0;
   if (!header_given && above > 0 && 2 * row(above).size() > reading.width) out.header_row = above;
+  if (out.units_row > 0 || out.header_row < 2) return;
+  const std::size_t over = filled_row(out.header_row - 1);  // units may stand over the names as well as under them
+  const bool is_as_wide = over > 0 && row(over).size() == reading.width;
+  if (is_as_wide && is_row_of_units(without_name_of_units(row(over)), {}, reading.decimal)) out.units_row = over;
+  if (out.units_row == 0) out.units_row = row_called_units(reading, out.header_row);
+}
+
+/// Of the rows of values those whose first cell is a text, where that of most, or of the last, is none: "Samples  800  800".
+class NamedRows {
+ public:
+  explicit NamedRows(const Reading& reading) : reading_(reading) {
+    std::size_t rows = 0, named = 0;
+    bool is_last_named = false;
+    for (const auto& row : reading.rows) {
+      if (!is_of_table(row)) continue;
+      is_last_named = begins_with_text(row);
+      ++rows, named += is_last_named ? 1 : 0;
+    }
+    are_few_ = 2 * named < rows || !is_last_named;  // a short table has fewer rows than its preamble
+  }
+  [[nodiscard]] bool is_of_table(const std::vector<std::string>& row) const {
+    return row.size() == reading_.width && is_row_of_values(row, reading_.decimal, reading_.expected);
+  }
+  [[nodiscard]] bool is_one(const std::vector<std::string>& row) const { return are_few_ && begins_with_text(row); }
+
+ private:
+  [[nodiscard]] bool begins_with_text(const std::vector<std::string>& row) const {
+    return !is_blank(row.front()) && values_in({row.front()}, reading_.decimal) == 0;
+  }
+  const Reading& reading_;
+  bool are_few_ = false;
+};
+
+/// The table's first row behind `least`; 0: there is none. Named rows are preamble where a row of names stands between
+/// them and the table; else they are the table's, and whoever reads it refuses the text.
+std::size_t find_first_row(const Reading& reading, std::size_t least) {
+  const NamedRows named(reading);
+  std::size_t first_named = 0;
+  bool names_follow = false;
+  for (std::size_t k = least; k < reading.rows.size(); ++k) {
+    const std::vector<std::string>& row = reading.rows[k];
+    if (!named.is_of_table(row)) {
+      const auto filled = row.size() - static_cast<std::size_t>(std::ranges::count_if(row, is_blank));
+      names_follow = names_follow || (first_named > 0 && filled > 1 && values_in(row, reading.decimal) == 0);
+    } else if (!named.is_one(row)) {
+      return first_named > 0 && !names_follow ? first_named : k + 1;
+    } else if (first_named == 0) {
+      first_named = k + 1;
+    }
+  }
+  return first_named;
 }
 
 /// "% time x": the sign that makes a comment of the header is no name where it makes a cell too many.
@@ -231,10 +310,7 @@ Result<FoundLayout> find_layout(std::string_view head, const LogLayout& given) {
   FoundLayout out{.delimiter = reading->delimiter, .decimal = reading->decimal, .header = {}, .units = {}};
   out.first_row = static_cast<std::size_t>(given.first_row);
   const auto least = static_cast<std::size_t>(std::max(given.header_row, given.units_row));
-  for (std::size_t k = least; k < reading->rows.size() && out.first_row == 0; ++k)
-    if (reading->rows[k].size() == reading->width &&
-        is_row_of_values(reading->rows[k], reading->decimal, reading->expected))
-      out.first_row = k + 1;
+  if (out.first_row == 0) out.first_row = find_first_row(*reading, least);
   if (out.first_row == 0 || out.first_row > reading->rows.size())
     return fail(error_at("row " + std::to_string(reading->rows.size()) + ", column 1", {},
                          "the file ends before its first row of numbers", "look at header_row and first_row"));
@@ -244,7 +320,8 @@ Result<FoundLayout> find_layout(std::string_view head, const LogLayout& given) {
   };
   for (const std::string& cell : without_comment_sign(cells_of(out.header_row), reading->width))
     out.header.push_back(out.header_row > 0 ? as_utf8(trim(cell)) : place_name(out.header.size()));
-  for (const std::string& cell : cells_of(out.units_row)) out.units.push_back(without_brackets(cell));
+  for (const std::string& cell : without_name_of_units(cells_of(out.units_row)))
+    out.units.push_back(without_brackets(cell));
   out.units.resize(out.header.size());
   return out;
 }

@@ -1,8 +1,8 @@
 // How a log is laid out: found from its first rows where nobody says it.
 //
 // Delimiter and decimal sign are those that make the most cells of the rows numbers or times; the table begins at the
-// first of the rows that have the commonest number of cells, and the rows above it are units (all of them units) and
-// header. What stands above those is preamble.
+// first of the rows that have the commonest number of cells, and the rows above it are header and units, in either order.
+// What stands above those is preamble, numbers behind a name among it; a row there that is called units is that.
 #pragma once
 
 #include <cstddef>

@@ -56,8 +56,8 @@ class LogReader {
       return fail(std::move(error));
     }
     mapped_ = std::move(*mapped);
-    Result<TimeFormat> format = TimeFormat::of(mapped_.time_unit);
-    if (!format) return fail(error_at("channel time", mapped_.time_unit, format.error().rule));
+    Result<TimeFormat> format = time_format(mapped_);
+    if (!format) return fail(format.error());
     time_format_ = std::move(*format);
     for (std::size_t k = 0; k < mapped_.columns.size(); ++k)
       if (mapped_.columns[k].column.name == "time") time_ = k;
@@ -118,6 +118,8 @@ class LogReader {
       return fail("the row has " + std::to_string(cells_.size()) + " cells and this is column " +
                       std::to_string(mapped_.columns[k].index + 1),
                   rows_.has_line_break() ? "take the row out" : "the last line is cut off");
+    if (k == time_ && values_[time_].empty() && trim(cell(k)).empty())
+      return fail("the cell is empty", "export the log with its times, as LabVIEW does with one X column");
     if (k == time_) return time_format_.seconds(cell(k), layout_.decimal);
     const Result<double> number = parse_number(cell(k), layout_.decimal);
     if (!number && holds_no_value(cell(k)))

@@ -27,8 +27,10 @@ constexpr std::uint32_t kMostName_bytes = 2048;      // MATLAB's longest name si
 
 // Types of elements, and the classes of arrays from double to 64-bit unsigned.
 enum Type : std::uint32_t { kInt8 = 1, kInt32 = 5, kUint32 = 6, kMatrix = 14, kCompressed = 15 };
+constexpr std::uint32_t kCellClass = 1;  // then structs, objects, texts, sparse matrices; from 16 functions and handles
 constexpr std::uint32_t kDoubleClass = 6;
 constexpr std::uint32_t kUint64Class = 15;
+constexpr std::uint32_t kOpaqueClass = 17;
 constexpr std::uint32_t kComplex = 0x800;  // flag of an array
 
 /// Bytes of one number by its type (int8, uint8, int16, uint16, int32, uint32, single, -, double, -, -, int64,
@@ -110,15 +112,23 @@ class ArrayElement {
   ArrayElement(ElementBytes& bytes, std::uint32_t length, bool swapped)
       : bytes_(bytes), left_(length), swapped_(swapped) {}
 
+  /// Whether it holds other arrays or texts, whose inside is not looked at.
+  [[nodiscard]] bool is_nested() const { return nested_; }
+  [[nodiscard]] const std::string& name() const { return name_; }
+
   /// Nothing when a length leaves the element, or the order of its parts is another.
   [[nodiscard]] Status check() {
     const std::optional<std::string> flags = part(kUint32, 8);
     if (!flags || flags->size() != 8) return damaged();
+    const std::uint32_t array = number(flags->data()), kind = array & 0xFFU;
+    nested_ = (kind >= kCellClass && kind < kDoubleClass) || (kind > kUint64Class && kind <= kOpaqueClass);
+    if (kind == kOpaqueClass) return {};  // has no dimensions
     const std::optional<std::string> dimensions = part(kInt32, kMostDimension_bytes);
     if (!dimensions || dimensions->size() < 8 || dimensions->size() % 4 != 0) return damaged();
     const std::optional<std::string> name = part(kInt8, kMostName_bytes);
     if (!name) return damaged();
-    const std::uint32_t array = number(flags->data()), kind = array & 0xFFU;
+    name_ = *name;
+    if (nested_) return {};
     if (kind < kDoubleClass || kind > kUint64Class)
       return fail(
           error_at("row 1, column " + printable(*name), {}, "must be one vector of real numbers", kTakeOutOrStore));
@@ -176,12 +186,21 @@ class ArrayElement {
   std::uint32_t left_;
   bool swapped_;
   bool small_ = false;
+  bool nested_ = false;
+  std::string name_;
 };
 
 std::uint32_t in_order(std::uint32_t value, bool swapped) { return swapped ? __builtin_bswap32(value) : value; }
 
-/// One element of the file, at its first byte behind the tag. `left`: how much all elements from here may inflate to.
-Status check_element(std::FILE* file, Tag tag, bool swapped, std::uint64_t& left) {
+/// What is known of the elements of a file so far.
+struct Chain {
+  std::uint64_t left = kMostInflated_bytes;  ///< to which all that follow may inflate
+  bool allows_nested = false;
+  bool is_nested = false;
+};
+
+/// One element of the file, at its first byte behind the tag.
+Status check_element(std::FILE* file, Tag tag, bool swapped, Chain& chain) {
   if (tag.type != kMatrix && tag.type != kCompressed) return {};  // matio passes over it
   ElementBytes bytes(file, tag.bytes, tag.type == kCompressed);
   std::array<std::uint32_t, 2> inner = {kMatrix, tag.bytes};
@@ -191,12 +210,17 @@ Status check_element(std::FILE* file, Tag tag, bool swapped, std::uint64_t& left
       return damaged();
     inner[1] = in_order(inner[1], swapped);
   }
-  if (const Status array = ArrayElement(bytes, inner[1], swapped).check(); !array) return array;
-  const bool ends_well = bytes.ends_well(left);
-  if (bytes.inflated() > left)
+  ArrayElement array(bytes, inner[1], swapped);
+  if (const Status checked = array.check(); !checked) return checked;
+  if (array.is_nested() && !chain.allows_nested)
+    return fail(error_at("row 1, column " + printable(array.name()), {}, "must be one vector of real numbers",
+                         kTakeOutOrStore));
+  chain.is_nested = chain.is_nested || array.is_nested();
+  const bool ends_well = bytes.ends_well(chain.left);
+  if (bytes.inflated() > chain.left)
     return fail("the file unpacks to more than " + std::to_string(kMostInflated_bytes / 1'000'000) + " MB",
                 "one recording is one test: save its vectors alone");
-  left -= bytes.inflated();
+  chain.left -= bytes.inflated();
   return ends_well ? Status{} : damaged();
 }
 
@@ -206,10 +230,9 @@ Status cut_at(long size) {
 
 /// The chain of elements behind a version 5 file's header, each 8 bytes of tag and as many bytes as the tag says: one
 /// that leaves the file was cut off, which matio would take for the end.
-Status check_chain(std::FILE* file, bool swapped) {
+Status check_chain(std::FILE* file, bool swapped, Chain& chain) {
   std::fseek(file, 0, SEEK_END);
   const long size = std::ftell(file);
-  std::uint64_t left = kMostInflated_bytes;
   std::size_t variables = 0;
   for (long at = kHeader_bytes; at < size;) {
     if (++variables > kMostVariables)
@@ -221,7 +244,7 @@ Status check_chain(std::FILE* file, bool swapped) {
     const Tag tag = {in_order(raw[0], swapped), in_order(raw[1], swapped)};
     at += 8 + static_cast<long>(tag.bytes);
     if (at > size) return cut_at(size);
-    if (const Status element = check_element(file, tag, swapped, left); !element) return element;
+    if (const Status element = check_element(file, tag, swapped, chain); !element) return element;
   }
   return {};
 }
@@ -245,7 +268,7 @@ bool is_version_4(std::string_view start) {
 
 }  // namespace
 
-Result<MatFormat> check_mat_container(const std::string& path) {
+Result<MatFormat> check_mat_container(const std::string& path, bool nested) {
   if (const Status is_file = check_file(path, kLargestRecording_bytes); !is_file) return fail(is_file.error());
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) return fail("cannot be opened");
@@ -257,8 +280,9 @@ Result<MatFormat> check_mat_container(const std::string& path) {
     const std::string_view mark = header.substr(kHeader_bytes - 4, 4);
     const bool swapped = mark == std::string_view("\1\0MI", 4);
     if (swapped || mark == std::string_view("\0\1IM", 4)) {
-      if (const Status chain = check_chain(file.get(), swapped); !chain) return fail(chain.error());
-      return MatFormat::version_5;
+      Chain chain{.allows_nested = nested};
+      if (const Status checked = check_chain(file.get(), swapped, chain); !checked) return fail(checked.error());
+      return chain.is_nested ? MatFormat::version_5_nested : MatFormat::version_5;
     }
     if (mark == std::string_view("\0\2IM", 4) && header.size() == start.size() &&
         header.substr(512) == "\x89HDF\r\n\x1a\n")

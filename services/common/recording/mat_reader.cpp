@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <string_view>
 
 #include "services/common/recording/hdf5_child.hpp"
+#include "services/common/recording/hdf5_reader.hpp"
 #include "services/common/recording/mat_container.hpp"
 #include "services/common/recording/recording_file.hpp"
 #include "services/common/text/numbers.hpp"
@@ -83,13 +83,11 @@ Result<std::size_t> vector_length(const matvar_t& variable, const std::string& n
   return length;
 }
 
-Result<std::vector<double>> read_vector(mat_t* file, matvar_t* variable, const std::string& name) {
-  const Result<std::size_t> length = vector_length(*variable, name);
-  if (!length) return fail(length.error());
+Result<std::vector<double>> read_vector(mat_t* file, matvar_t* variable, const std::string& name, std::size_t length) {
   if (Mat_VarReadDataAll(file, variable) != 0 || variable->data == nullptr ||
-      variable->nbytes < *length * static_cast<std::size_t>(variable->data_size))
+      variable->nbytes < length * static_cast<std::size_t>(variable->data_size))
     return fail(variable_error(name, "its data cannot be read: the file is cut off or damaged"));
-  return numbers(*variable, *length);
+  return numbers(*variable, length);
 }
 
 Result<std::vector<MatVariable>> read_variables(const std::string& path, const PlantDescription& plant) {
@@ -106,7 +104,9 @@ Result<std::vector<MatVariable>> read_variables(const std::string& path, const P
       variables.push_back({std::move(name), {}});
       continue;
     }
-    Result<std::vector<double>> samples = read_vector(file.get(), variable.get(), name);
+    const Result<std::size_t> length = vector_length(*variable, name);
+    if (!length) return fail(length.error());
+    Result<std::vector<double>> samples = read_vector(file.get(), variable.get(), name, *length);
     if (!samples) return fail(samples.error());
     total += samples->size();
     if (total > kMostNumbers) return fail(variable_error(name, kTooMany));
@@ -115,33 +115,90 @@ Result<std::vector<MatVariable>> read_variables(const std::string& path, const P
   return variables;
 }
 
+/// All vectors of a file of version 5, those in structs by their path: rec/Y/2/Data is field Data of the second of Y.
+class NestedVectors {
+ public:
+  explicit NestedVectors(mat_t* file) : file_(file) {}
+
+  Status add(matvar_t& variable, const std::string& name, int depth) {
+    if (++objects_ > kMostObjects || depth > kDeepest)
+      return fail(variable_error(name, "is nested too deeply, or holds too much", "save its vectors alone"));
+    if (variable.class_type == MAT_C_STRUCT) return add_fields(variable, name, depth);
+    if (variable.isComplex != 0) return pass_over(name, kIsComplex, kStoreRealPart);
+    if (variable.class_type == MAT_C_CHAR || variable.class_type == MAT_C_OPAQUE ||
+        variable.class_type == MAT_C_OBJECT || variable.class_type == MAT_C_CELL || variable.class_type == MAT_C_SPARSE)
+      return pass_over(
+          name, "is text, a cell array, a sparse matrix or an object, where one number for each sample is needed",
+          "save its vectors alone, of a timeseries Time and Data");
+    return add_numbers(variable, name);
+  }
+
+  std::vector<MatVariable> take() { return std::move(found_); }
+
+ private:
+  Status pass_over(const std::string& name, const char* rule, const char* advice) {
+    found_.push_back({.name = name, .values = {}, .rule = rule, .advice = advice});
+    return {};
+  }
+
+  Status add_fields(matvar_t& variable, const std::string& name, int depth) {
+    std::size_t count = variable.rank > 0 ? 1 : 0;
+    for (int k = 0; k < variable.rank && count <= kMostObjects; ++k) count *= variable.dims[k];
+    const unsigned fields = Mat_VarGetNumberOfFields(&variable);
+    char* const* const names = Mat_VarGetStructFieldnames(&variable);
+    for (std::size_t k = 0; k < count; ++k)
+      for (unsigned field = 0; field < fields; ++field) {
+        matvar_t* const inner = Mat_VarGetStructFieldByIndex(&variable, field, k);
+        const std::string path = name + "/" + (count > 1 ? std::to_string(k + 1) + "/" : "") + names[field];
+        if (inner == nullptr) continue;
+        if (const Status added = add(*inner, path, depth + 1); !added) return added;
+      }
+    return {};
+  }
+
+  /// A matrix is as many vectors as it has columns.
+  Status add_numbers(matvar_t& variable, const std::string& name) {
+    const bool numeric = variable.class_type >= MAT_C_DOUBLE && variable.class_type <= MAT_C_UINT64;
+    if (!numeric || variable.rank != 2) return {};
+    const std::size_t rows = variable.dims[0], columns = variable.dims[1];
+    const bool vector = rows == 1 || columns == 1;
+    if (rows == 0 || columns == 0 || (!vector && (columns > kMostColumns || columns >= rows))) return {};
+    if (rows > kMostNumbers || rows * columns > kMostNumbers - total_) return fail(variable_error(name, kTooMany));
+    total_ += rows * columns;
+    Result<std::vector<double>> all = read_vector(file_, &variable, name, rows * columns);
+    if (!all) return fail(all.error());
+    if (vector) found_.push_back({.name = name, .values = std::move(*all)});
+    for (std::size_t column = 0; column < columns && !vector; ++column) {
+      const auto begin = all->begin() + static_cast<std::ptrdiff_t>(column * rows);
+      found_.push_back({.name = name + "/" + std::to_string(column + 1),
+                        .values = std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(rows))});
+    }
+    return {};
+  }
+
+  static constexpr std::size_t kMostObjects = 10'000, kMostColumns = 256;
+  static constexpr int kDeepest = 16;
+  mat_t* file_;
+  std::vector<MatVariable> found_;
+  std::size_t objects_ = 0;
+  std::size_t total_ = 0;
+};
+
 Result<std::vector<MatVariable>> read_all_vectors(const std::string& path) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const MatFile file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
-  if (!file) return fail("is damaged: neither MATLAB version 5 nor 7.3 can be read from it");
-  std::vector<MatVariable> vectors;
-  std::size_t total = 0;
-  while (const Variable variable{Mat_VarReadNextInfo(file.get())}) {
-    const std::string name = variable->name != nullptr ? variable->name : "";
-    if (variable->isComplex != 0) vectors.push_back({.name = name, .values = {}, .is_complex = true});
-    if (!vector_length(*variable, name)) continue;
-    Result<std::vector<double>> samples = read_vector(file.get(), variable.get(), name);
-    if (!samples) return fail(samples.error());
-    total += samples->size();
-    if (total > kMostNumbers) return fail(variable_error(name, kTooMany));
-    vectors.push_back({name, std::move(*samples)});
-  }
-  return vectors;
+  if (!file) return fail("is damaged: MATLAB version 5 cannot be read from it");
+  NestedVectors vectors(file.get());
+  while (const Variable variable{Mat_VarReadNextInfo(file.get())})
+    if (const Status added = vectors.add(*variable, variable->name != nullptr ? variable->name : "", 0); !added)
+      return fail(added.error());
+  return vectors.take();
 }
 
-/// HDF5 as Debian builds it is not safe for threads; version 7.3 is HDF5, which is read in a child process.
-Result<std::vector<MatVariable>> read_container(const std::string& path,
-                                                const std::function<Result<std::vector<MatVariable>>()>& read) {
-  static std::mutex one_at_a_time;
-  const std::lock_guard<std::mutex> lock(one_at_a_time);
-  const Result<MatFormat> format = check_mat_container(path);
-  if (!format) return fail(format.error());
-  return *format == MatFormat::version_7_3 ? in_child(read) : read();
+/// One file at a time, as HDF5 in Debian's build is not safe for threads.
+std::unique_lock<std::mutex> one_at_a_time() {
+  static std::mutex mutex;
+  return std::unique_lock<std::mutex>(mutex);
 }
 
 Error sample_error(const std::string& name, std::size_t row, double value, std::string rule) {
@@ -174,7 +231,11 @@ Status check(const ColumnarSamples& read) {
 }  // namespace
 
 Result<ColumnarSamples> read_mat(const std::string& path, const PlantDescription& plant) {
-  Result<std::vector<MatVariable>> variables = read_container(path, [&] { return read_variables(path, plant); });
+  const auto lock = one_at_a_time();
+  const Result<MatFormat> format = check_mat_container(path);
+  if (!format) return fail(format.error());
+  const auto read = [&] { return read_variables(path, plant); };
+  Result<std::vector<MatVariable>> variables = *format == MatFormat::version_7_3 ? in_child(read) : read();
   if (!variables) return fail(variables.error());
   std::vector<std::string_view> cells;
   std::vector<std::vector<double>> values;
@@ -190,7 +251,12 @@ Result<ColumnarSamples> read_mat(const std::string& path, const PlantDescription
 }
 
 Result<std::vector<MatVariable>> read_mat_vectors(const std::string& path) {
-  return read_container(path, [&path] { return read_all_vectors(path); });
+  const auto lock = one_at_a_time();
+  const Result<MatFormat> format = check_mat_container(path, true);
+  if (!format) return fail(format.error());
+  if (*format == MatFormat::version_7_3) return read_hdf5_vectors(path);  // with its structs, as groups
+  const auto read = [&path] { return read_all_vectors(path); };
+  return *format == MatFormat::version_5_nested ? in_child(read) : read();
 }
 
 }  // namespace sealwatch

@@ -14,7 +14,8 @@ namespace sealwatch {
 /// Debian builds it allows no more.
 [[nodiscard]] Result<ColumnarSamples> read_mat(const std::string& path, const PlantDescription& plant);
 
-/// All vectors of real numbers in `path`, and the names of those of complex ones; other variables are passed over.
+/// All vectors of real numbers in `path`, the columns of matrices and the fields of structs among them, by their path; of
+/// text, cells, objects and complex numbers the names and why they are none.
 [[nodiscard]] Result<std::vector<MatVariable>> read_mat_vectors(const std::string& path);
 
 }  // namespace sealwatch

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "services/common/recording/cells.hpp"
 #include "services/common/recording/log_columns.hpp"
@@ -11,19 +13,57 @@
 namespace sealwatch {
 namespace {
 
-/// By the last part of the path where that is a name of one's own in the file, else by the whole path.
-std::vector<OfferedColumn> offered_by(const std::vector<MatVariable>& vectors, const ChannelMap& map) {
-  std::vector<OfferedColumn> offered;
-  for (const MatVariable& vector : vectors) {
-    const auto named = [&](const auto& entry) { return entry.second.column == vector.name; };
-    const bool whole = std::ranges::any_of(map.columns, named);
-    offered.push_back({whole ? vector.name : vector.name.substr(vector.name.rfind('/') + 1), vector.unit});
+/// Vectors that stand for a channel although something speaks against it are refused.
+Status check_vector(const MatVariable& vector, const std::string& channel, const ChannelMap& map) {
+  const std::string place = "channel " + channel;
+  if (!vector.rule.empty()) return fail(error_at(place, vector.name, vector.rule, vector.advice));
+  const auto mapping = map.columns.find(channel);
+  const bool is_scaled = mapping != map.columns.end() &&
+                         (mapping->second.is_scaled || mapping->second.scale != 1.0 || mapping->second.offset != 0.0);
+  if (vector.scaling.empty() || is_scaled) return {};
+  return fail(error_at(place, vector.name,
+                       "has the attribute " + printable(vector.scaling) + ", so its numbers are scaled",
+                       "give scale and offset in the map: unit = scale number + offset"));
+}
+
+/// Leaves out the samples at which a channel has no number.
+void skip_incomplete(std::vector<std::vector<double>>& vectors) {
+  std::vector<bool> is_complete(vectors.front().size(), true);
+  for (const std::vector<double>& vector : vectors)
+    for (std::size_t row = 0; row < vector.size(); ++row)
+      if (std::isnan(vector[row])) is_complete[row] = false;
+  for (std::vector<double>& vector : vectors) {
+    std::size_t row = 0;
+    std::erase_if(vector, [&](double) { return !is_complete[row++]; });
   }
-  return offered;
+}
+
+/// The numbers of all mapped vectors as they are stored, each as long as time.
+Result<std::vector<std::vector<double>>> numbers_of(std::vector<MatVariable>& vectors, const MappedColumns& mapped,
+                                                    const ChannelMap& map) {
+  std::vector<std::vector<double>> numbers;
+  std::size_t rows = 0;
+  for (const MappedColumn& found : mapped.columns) {
+    MatVariable& vector = vectors[found.index];
+    if (const Status checked = check_vector(vector, found.column.name, map); !checked) return fail(checked.error());
+    if (found.column.name == "time") rows = vector.values.size();
+    numbers.push_back(std::move(vector.values));
+  }
+  if (rows == 0) return fail(error_at("channel time", {}, "holds no samples"));
+  for (std::size_t k = 0; k < numbers.size(); ++k)
+    if (numbers[k].size() != rows)
+      return fail(
+          error_at("channel " + mapped.columns[k].column.name, vectors[mapped.columns[k].index].name,
+                   "has " + std::to_string(numbers[k].size()) + " samples where time has " + std::to_string(rows),
+                   "sample all channels at the same times"));
+  if (map.log.incomplete_rows == "skip") skip_incomplete(numbers);
+  return numbers;
 }
 
 Error sample_error(const std::string& channel, std::size_t row, double value, std::string rule) {
-  return error_at("row " + std::to_string(row + 1) + ", channel " + channel, text::exact(value), std::move(rule));
+  const char* const advice = std::isnan(value) ? "log: {incomplete_rows: skip} leaves such rows out" : "";
+  return error_at("row " + std::to_string(row + 1) + ", channel " + channel, text::exact(value), std::move(rule),
+                  advice);
 }
 
 Result<std::vector<double>> in_seconds(const std::vector<double>& numbers, TimeFormat& format) {
@@ -48,34 +88,49 @@ Result<std::vector<double>> in_si(std::vector<double> numbers, const Column& col
   return numbers;
 }
 
+/// values, data, y: what many vectors are called, and their group says which they are.
+bool says_nothing(const std::string& name) {
+  static const std::set<std::string> kNames = {"value", "values", "Value", "Values", "data", "Data", "y", "Y"};
+  return kNames.contains(name) || name.find_first_not_of("0123456789") == std::string::npos;
+}
+
 }  // namespace
 
+std::vector<OfferedColumn> offered_vectors(const std::vector<MatVariable>& vectors, const ChannelMap& map) {
+  const auto last_part = [](const std::string& path) { return path.substr(path.rfind('/') + 1); };
+  std::map<std::string, int> uses;
+  for (const MatVariable& vector : vectors) ++uses[last_part(vector.name)];
+  std::vector<OfferedColumn> offered;
+  for (const MatVariable& vector : vectors) {
+    const std::string last = last_part(vector.name);
+    const auto is_named = [&](const std::string& name) {
+      return std::ranges::any_of(map.columns, [&](const auto& entry) { return entry.second.column == name; });
+    };
+    const bool whole = uses[last] > 1 || is_named(vector.name) || (says_nothing(last) && !is_named(last));
+    offered.push_back({whole ? vector.name : last, vector.unit});
+  }
+  return offered;
+}
+
 Result<Log> log_of_vectors(std::vector<MatVariable> vectors, const PlantDescription& plant, const ChannelMap& map) {
-  Result<MappedColumns> mapped = map_columns(offered_by(vectors, map), plant, map);
+  Result<MappedColumns> mapped = map_columns(offered_vectors(vectors, map), plant, map);
   if (!mapped) return fail(mapped.error());
-  Result<TimeFormat> format = TimeFormat::of(mapped->time_unit);
-  if (!format) return fail(error_at("channel time", mapped->time_unit, format.error().rule));
+  Result<TimeFormat> format = time_format(*mapped);
+  if (!format) return fail(format.error());
   std::vector<Column> columns;
   std::vector<std::vector<double>> values;
-  for (const MappedColumn& found : mapped->columns) {
-    if (vectors[found.index].is_complex)
-      return fail(error_at("channel " + found.column.name, printable(vectors[found.index].name), kIsComplex,
-                           "store its real part, or its magnitude, under a name of its own"));
-    const std::vector<double>& numbers = vectors[found.index].values;
+  Result<std::vector<std::vector<double>>> numbers = numbers_of(vectors, *mapped, map);
+  if (!numbers) return fail(numbers.error());
+  for (std::size_t k = 0; k < numbers->size(); ++k) {
+    const Column& column = mapped->columns[k].column;
     Result<std::vector<double>> converted =
-        found.column.name == "time" ? in_seconds(numbers, *format) : in_si(numbers, found.column);
+        column.name == "time" ? in_seconds((*numbers)[k], *format) : in_si(std::move((*numbers)[k]), column);
     if (!converted) return fail(converted.error());
-    columns.push_back(found.column);
+    columns.push_back(column);
     values.push_back(std::move(*converted));
   }
   LogTest test{.read = assemble(std::move(columns), std::move(values)), .start_time = {}, .clock = {}, .first_row = 1};
-  const std::size_t rows = test.read.samples.time_s.size();
-  for (const Series& channel : test.read.samples.channels)
-    if (channel.values.size() != rows)
-      return fail(
-          error_at("channel " + channel.name, {},
-                   "has " + std::to_string(channel.values.size()) + " samples where time has " + std::to_string(rows)));
-  if (rows == 0) return fail(error_at("channel time", {}, "holds no samples"));
+  if (test.read.samples.time_s.empty()) return fail(error_at("channel time", {}, "holds no samples"));
   test.start_time = format->utc(test.read.samples.time_s.front());
   test.clock = format->clock(test.read.samples.time_s.front());
   return Log{

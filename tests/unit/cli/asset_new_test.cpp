@@ -1,9 +1,12 @@
 // A first asset file from somebody's own log: what is written is accepted, and reads the log by the right columns.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <matio.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 #include "sealwatch/model/plant_description.hpp"
@@ -60,6 +63,74 @@ TEST_F(AssetNew, TheWrittenFileReadsTheLogWithoutFurtherWork) {
   EXPECT_EQ(samples.find("motor_voltage")->values.back(), 1.1);
   EXPECT_EQ(recording->left_aside, std::vector<std::string>{"Bemerkung"});
   EXPECT_TRUE(std::filesystem::exists(path("a.html")));
+}
+
+TEST_F(AssetNew, ALogWithoutATimeIsRefused) {
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(make("U [V];Weg [mm]\n1,5;60\n1,2;59\n1,7;58\n"), kBadInput);
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_THAT(said, testing::HasSubstr("log.csv: no column is a time"));
+  EXPECT_THAT(said, testing::HasSubstr("scale: SECONDS_BETWEEN_SAMPLES"));
+  EXPECT_FALSE(std::filesystem::exists(path("a.yaml")));
+}
+
+TEST_F(AssetNew, VectorsWithHolesAreReadAsTheWrittenFileSays) {
+  write_pump();
+  mat_t* file = Mat_CreateVer(path("log.mat").c_str(), nullptr, MAT_FT_MAT5);
+  const double hole = std::numeric_limits<double>::quiet_NaN();
+  const auto add = [&](const char* name, std::array<double, 4> values) {
+    std::array<std::size_t, 2> size = {4, 1};
+    matvar_t* variable = Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, size.data(), values.data(), 0);
+    Mat_VarWrite(file, variable, MAT_COMPRESSION_NONE);
+    Mat_VarFree(variable);
+  };
+  add("t", {0, 1, 2, 3}), add("opening", {0, 0.5, 0.5, 1}), add("pressure", {1, 2, hole, 4});
+  Mat_Close(file);
+  ASSERT_EQ(
+      run_asset_new(
+          {.log = path("log.mat"), .file = path("a.yaml"), .model = path("pump.yaml"), .asset_id = {}, .yes = true}),
+      kOk);
+  const Result<AssetConfig> asset = load_asset(path("a.yaml"));
+  ASSERT_TRUE(asset) << asset.error().describe();
+  const auto recording = read_recording(path("log.mat"), **find_plant(asset->model), asset->channel_map);
+  ASSERT_TRUE(recording) << recording.error().describe();
+  EXPECT_THAT(recording->samples.time_s, testing::ElementsAre(0.0, 1.0, 3.0));
+}
+
+TEST_F(AssetNew, ADateThatMayBeReadInTwoWaysIsRemarkedOn) {
+  write_pump();
+  const auto remark_of = [&](const std::string& date) {
+    std::filesystem::remove(path("a.yaml"));
+    const std::string text = "time,opening,pressure [bar]\n" + date + " 03:00:00,0.5,1\n" + date + " 03:00:01,0.5,2\n";
+    testing::internal::CaptureStdout();
+    EXPECT_EQ(make(text.c_str(), path("pump.yaml")), kOk);
+    return testing::internal::GetCapturedStdout();
+  };
+  EXPECT_THAT(remark_of("3/4/2031"),
+              testing::HasSubstr("the time 3/4/2031 03:00:00 is taken for day/month: where it is "
+                                 "month/day, write '%m/%d/%Y %H:%M:%S' as its unit"));
+  EXPECT_THAT(remark_of("25/4/2031"), testing::Not(testing::HasSubstr("day/month")));
+}
+
+TEST_F(AssetNew, ADayInAColumnOfItsOwnIsRemarkedOn) {
+  write_pump();
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(make("Date;Time;opening;pressure [bar]\n25.04.2031;23:59:59;0,5;1\n26.04.2031;00:00:00;0,5;2\n",
+                 path("pump.yaml")),
+            kOk);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              testing::AllOf(testing::HasSubstr("1 test of 2 samples"),
+                             testing::HasSubstr("the day in column Date is not read: give the test's start_time")));
+}
+
+TEST_F(AssetNew, DaysAsMatlabCountsThemAreRecognised) {
+  write_pump();
+  ASSERT_EQ(make("when,opening,pressure [bar]\n736696.25,0.5,1\n736696.250005787,0.5,2\n736696.250011574,0.5,4\n",
+                 path("pump.yaml")),
+            kOk);
+  const Result<AssetConfig> asset = load_asset(path("a.yaml"));
+  ASSERT_TRUE(asset) << asset.error().describe();
+  EXPECT_EQ(asset->channel_map.columns.at("time").unit, "datenum");
 }
 
 // The same rule as in a map: the unit may end the name.

@@ -54,6 +54,17 @@ TEST(OneLine, SaysWhatMattersWithUnits) {
   EXPECT_THAT(one_line(Message(estimate)), HasSubstr("no estimate: cut"));
 }
 
+TEST(OneLine, FeaturesAreWrittenAsPagesWriteThem) {
+  TestFeatures features;
+  features.features = {{.name = "travel", .unit = "m", .value = 0.016},
+                       {.name = "running_pressure_out", .unit = "Pa", .value = 8.79e6},
+                       {.name = "leakage_resistance", .unit = "Pa s/m3", .value = 2.23e13},
+                       {.name = "drive_saturation", .unit = "1", .value = 0.0}};
+  EXPECT_THAT(one_line(Message(features)),
+              HasSubstr("  travel 16.0 mm, running pressure out 87.9 bar, leakage resistance 2.23·10¹³ Pa·s/m³, drive "
+                        "saturation 0"));
+}
+
 TEST(ForecastTable, ShowsNumbersOnlyWhereThereIsAForecast) {
   Forecast none;
   none.method = "ols";

@@ -204,7 +204,7 @@ TEST(ActuatorFit, AParameterOutsideItsBoundsEndsThereAndSaysSo) {
   EXPECT_TRUE(find(fit.report, "R_CL")->at_bound);
   EXPECT_TRUE(std::isinf(find(fit.report, "R_CL")->std_error));
   EXPECT_FALSE(fit.report.admissible);
-  EXPECT_THAT(fit.report.reasons, testing::Contains(testing::HasSubstr("R_CL ended at its bound 2e+13 Pa s/m3")));
+  EXPECT_THAT(fit.report.reasons, testing::Contains(testing::HasSubstr("R_CL ended at its bound 2·10¹³ Pa·s/m³")));
 }
 
 TEST(ActuatorFit, TellsItsIterationsAndEndsAtItsDeadlineWithTheBestSoFar) {

@@ -56,6 +56,32 @@ TEST(ModelValidation, SeesAnotherParameterAndFitsIt) {
   EXPECT_NEAR(leakage->value, 0.7e13, 5.0 * leakage->std_error);
 }
 
+TEST(ModelValidation, SaysOfEachChannelOnceThatItMisfitsTheWorstFirst) {
+  const AssetConfig asset = verification::testing::actuator();
+  const double area = 1.2 * asset.parameters.at("A_C").value;  // is not estimated
+  const std::vector<Recording> recordings{recorded(asset, {{"A_C", area}}, 1), recorded(asset, {{"A_C", area}}, 2)};
+  const auto fitted = validate_model(asset, recordings, {"a.csv", "b.csv"}, true);
+  ASSERT_TRUE(fitted);
+  for (const RecordingValidation& recording : fitted->recordings)
+    for (const ChannelValidation& channel : recording.channels) {
+      const auto names_it = [&](const std::string& reason) {
+        return reason.find(channel.fit.channel + " ") != std::string::npos;
+      };
+      EXPECT_LE(std::ranges::count_if(fitted->reasons, names_it), 1) << channel.fit.channel;
+    }
+  const auto first = std::ranges::find_if(fitted->reasons, [](const std::string& reason) {
+    return reason.find("noise standard deviations") != std::string::npos;
+  });
+  ASSERT_NE(first, fitted->reasons.end());
+  double worst = 0.0;
+  std::string name;
+  for (const RecordingValidation& recording : fitted->recordings)
+    for (const ChannelValidation& channel : recording.channels)
+      if (channel.fit.noise_normalised_rms > worst)
+        worst = channel.fit.noise_normalised_rms, name = channel.fit.channel;
+  EXPECT_TRUE(first->starts_with(name + " ")) << *first << ", worst is " << name;
+}
+
 // Within the limits, but no noise: the leak is off by a little, which the position shows.
 TEST(ModelValidation, RemarksOnWhatIsMoreThanNoiseWithinTheLimits) {
   const AssetConfig asset = verification::testing::actuator();

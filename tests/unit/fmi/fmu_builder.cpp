@@ -120,6 +120,20 @@ TestUnit emps() {
   return unit;
 }
 
+TestUnit small_input() {
+  TestUnit unit{.binary = "fmu_small_input2",
+                .token = "{sealwatch-test-small-input}",
+                .variables = {},
+                .structure = {},
+                .interfaces = {},
+                .version = {}};
+  unit.variables = real2("x", 1000, "", "") + real2("der(x)", 2000, "", "derivative=\"1\"") +
+                   real2("i", 3000, "causality=\"input\"", "start=\"0\" nominal=\"1e-9\"") +
+                   real2("y", 5000, "causality=\"output\"", "");
+  unit.structure = "<Outputs><Unknown index=\"4\"/></Outputs><Derivatives><Unknown index=\"2\"/></Derivatives>\n";
+  return unit;
+}
+
 TestUnit gain() {
   TestUnit unit{.binary = "fmu_gain_cs2", .variables = {}, .structure = {}, .interfaces = {}, .version = {}};
   unit.interfaces = "<CoSimulation modelIdentifier=\"model\" canHandleVariableCommunicationStepSize=\"true\"/>\n";

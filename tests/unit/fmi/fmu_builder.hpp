@@ -36,6 +36,8 @@ struct TestUnit {
 /// For Co-Simulation.
 [[nodiscard]] TestUnit gain();
 [[nodiscard]] TestUnit bouncing(const std::string& binary);
+/// An input of some 1e-9, as its nominal value says.
+[[nodiscard]] TestUnit small_input();
 /// Inputs of all types, time events, a state that a parameter starts, a text: for Model Exchange and Co-Simulation.
 [[nodiscard]] TestUnit mixed(const std::string& binary);
 /// Arrays whose size is a structural parameter.

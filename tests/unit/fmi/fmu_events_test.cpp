@@ -93,6 +93,51 @@ TEST(FmuEvents, StateAndTimeEventsAreWhereTheyShouldBe) {
   }
 }
 
+/// The file's plant with another start; its heights from 0 to 2 s.
+std::vector<double> heights_from(const TestFolder& folder, const std::string& name, const std::string& height_start,
+                                 const std::string& velocity_start) {
+  const std::string file = ball_file(folder, name);
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  std::string changed = std::regex_replace(text.str(), std::regex("\"1.0\\[m\\]\""), height_start);
+  std::ofstream(file) << std::regex_replace(changed, std::regex("\"0\\[m/s\\]\""), velocity_start);
+  const auto plant = load_plant(file);
+  EXPECT_TRUE(plant) << plant.error().front().describe();
+  const auto simulation = PlantSimulation::create(nominal_asset(name), watched());
+  EXPECT_TRUE(simulation) << simulation.error().describe();
+  const auto outputs = (*simulation)->run((*simulation)->start(), {}, {.relative_tolerance = 1e-7});
+  EXPECT_TRUE(outputs) << outputs.error().describe();
+  std::vector<double> heights;
+  for (int row = 0; row <= 200 && outputs; ++row) heights.push_back(outputs->values(row, 0));
+  return heights;
+}
+
+TEST(FmuEvents, AStateEventAtTheVeryBeginningIsPassed) {
+  const TestFolder folder;
+  const std::string fmu = folder.build(bouncing("fmu_bouncing2"));
+  const std::vector<double> found = heights_from(folder, "ball_from_the_ground", "\"0[m]\"", "\"-2.0[m/s]\"");
+  ASSERT_EQ(found.size(), 201U);
+  for (std::size_t row = 0; row <= 28; ++row) {  // it comes down after 0.285 s
+    const double t = 0.01 * static_cast<double>(row);
+    EXPECT_NEAR(found[row], 2.0 * kBounce * t - 0.5 * kGravity * t * t, 1e-6) << t;
+  }
+}
+
+TEST(FmuEvents, ATimeEventAtTheVeryBeginningIsPassed) {
+  const TestFolder folder;
+  const std::string fmu = folder.build(bouncing("fmu_thrown_at_once2"));
+  const std::vector<double> found = heights_from(folder, "ball_thrown_at_once", "\"1.0[m]\"", "fmu");
+  ASSERT_EQ(found.size(), 201U);
+  for (std::size_t row = 0; row <= 70; ++row) {
+    const double t = 0.01 * static_cast<double>(row);
+    EXPECT_NEAR(found[row], 1.0 + kThrow * t - 0.5 * kGravity * t * t, 1e-6) << t;
+  }
+  for (std::size_t row = 71; row <= 90; ++row) {
+    const double t = 0.01 * static_cast<double>(row) - 0.7, thrown = 1.0 + kThrow * 0.7 - 0.5 * kGravity * 0.49;
+    EXPECT_NEAR(found[row], thrown + kThrow * t - 0.5 * kGravity * t * t, 1e-6) << t;
+  }
+}
+
 TEST(FmuEvents, SensitivitiesAcrossJumpsAreThoseOfTheWholeCourse) {
   const TestFolder folder;
   const std::string fmu = folder.build(bouncing("fmu_bouncing2"));

@@ -369,6 +369,44 @@ states:
   EXPECT_LT((expected - found).cwiseAbs().maxCoeff(), 1e-5 * expected.cwiseAbs().maxCoeff());
 }
 
+// Differences over steps of a usual quantity's size would be those of quite another input.
+TEST(FmuPlant, AnInputsNominalValueIsTheSizeOfItsDifferences) {
+  const TestFolder folder;
+  const std::string fmu = folder.build(small_input());
+  const std::string file = (folder / "plant.yaml").string();
+  std::ofstream(file) << R"yaml(name: small_input
+meaning: a current of some nanoamperes
+fmu:
+  file: model.fmu
+  inputs: {i: k*current}
+  variables: {y: {variable: y, unit: "1"}}
+inputs: {current: {unit: A}}
+outputs: {shown: {value: y, unit: "1", noise_std: 1.0e-3}}
+parameters: {k: {value: 1.0, unit: "1", estimate: true}}
+states:
+  x: {unit: "1", start: "0", own: false, size: 10.0}
+law_sizes: {}
+)yaml";
+  const auto plant = load_plant(file);
+  ASSERT_TRUE(plant) << plant.error().front().describe();
+  TimeSeries samples;
+  samples.channels = {{"current", "A", 0.0, {}}, {"shown", "1", 0.0, {}}};
+  for (int row = 0; row <= 100; ++row) {
+    samples.time_s.push_back(0.01 * row);
+    for (Series& channel : samples.channels) channel.values.push_back(2e-9);
+  }
+  const auto simulation = PlantSimulation::create(nominal_asset("small_input"), samples);
+  ASSERT_TRUE(simulation) << simulation.error().describe();
+  const std::vector<FreeQuantity> free = {*(*simulation)->find("k")};
+  const auto outputs = (*simulation)->run((*simulation)->start(), free, {.relative_tolerance = 1e-7});
+  ASSERT_TRUE(outputs) << outputs.error().describe();
+  for (int row = 0; row <= 100; ++row) {
+    const double rise = 1.0 - std::exp(-0.01 * row);
+    EXPECT_NEAR(outputs->values(row, 0), 8.0 * rise + 2.0, 1e-5);
+    EXPECT_NEAR(outputs->sensitivities(row, 0), 24.0 * rise + 2.0, 1e-3);
+  }
+}
+
 TEST(ExportedFmu, SimulatesAsThePlantWithItsLaws) {
   const TestFolder folder;
   ASSERT_TRUE(load_plant(text_file()));

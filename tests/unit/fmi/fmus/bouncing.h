@@ -1,5 +1,8 @@
 /* A ball that falls from 1 m and is thrown up again by a hand every 0.7 s: a state event (it touches the ground and
  * bounces with the factor e) and a time event (its velocity becomes w). */
+#ifndef FIRST_THROW
+#define FIRST_THROW 0.7
+#endif
 #define MODEL_TOKEN "{sealwatch-test-bouncing}"
 #define STATES 2
 #define INPUTS 0
@@ -32,11 +35,11 @@ static int model_event(double t, double* x, const double* u, const double* p, do
     x[1] = -p[E_] * x[1];
     changed = 1;
   }
-  if (t >= 0.7 * (d[0] + 1.0) - 1e-12) {
+  if (t >= FIRST_THROW + 0.7 * d[0] - 1e-12) {
     d[0] += 1.0;
     x[1] = p[W_];
     changed = 1;
   }
-  *next_time = 0.7 * (d[0] + 1.0);
+  *next_time = FIRST_THROW + 0.7 * d[0];
   return changed;
 }

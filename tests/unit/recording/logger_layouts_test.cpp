@@ -1,0 +1,174 @@
+// Layouts that loggers and instruments write: where units and names stand, times and words for no value.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "services/common/recording/recording_file.hpp"
+#include "tests/unit/recording/plant.hpp"
+
+namespace sealwatch {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::DoubleEq;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+class LoggerLayouts : public ScratchFolder {
+ protected:
+  static ChannelMap map_of(const std::string& time, const std::string& time_unit) {
+    return {.columns = {{"time", {.column = time, .unit = time_unit}},
+                        {"motor_voltage", {.column = "U", .unit = {}}},
+                        {"position", {.column = "x", .unit = {}}}},
+            .log = {}};
+  }
+  Recording read(const std::string& text, const ChannelMap& map = map_of("t", "")) {
+    Result<Recording> result = read_recording(write("log.csv", text), test_plant(), map);
+    EXPECT_TRUE(result) << text << result.error().describe();
+    return result ? *result : Recording{};
+  }
+  std::string error_of(const std::string& text, const ChannelMap& map = map_of("t", "")) {
+    const Result<Recording> result = read_recording(write("log.csv", text), test_plant(), map);
+    EXPECT_FALSE(result) << "accepted " << text;
+    return result ? "" : result.error().describe();
+  }
+};
+
+/// Three rows: 1, 2, 4 mV; 60, 59, 57 mm; half a second apart.
+void expect_three_rows(const Recording& recording) {
+  ASSERT_TRUE(recording.samples.has("motor_voltage") && recording.samples.has("position"));
+  EXPECT_THAT(recording.samples.time_s, ElementsAre(0.0, 0.5, 1.0));
+  EXPECT_THAT(recording.samples.find("motor_voltage")->values,
+              ElementsAre(DoubleEq(0.001), DoubleEq(0.002), DoubleEq(0.004)));
+  EXPECT_THAT(recording.samples.find("position")->values,
+              ElementsAre(DoubleEq(0.060), DoubleEq(0.059), DoubleEq(0.057)));
+}
+
+const std::string kRows = "0;1;60\n500;2;59\n1000;4;57\n";
+
+TEST_F(LoggerLayouts, UnitsStandOverTheNamesOrUnderThem) {
+  for (const char* head :
+       {"ms;mV;mm\nt;U;x\n", "[ms];[mV];[mm]\nt;U;x\n", "Rig 3\noperator;Miller\n\n[ms];[mV];[mm]\nt;U;x\n",
+        "t;U;x\nms;mV;mm\n", "t;U;x\n(msec);(mV);(millimeters)\n\n", "t;U;x\nms;mV;mm\nraw;raw;mean\n"})
+    expect_three_rows(read(head + kRows));
+}
+
+TEST_F(LoggerLayouts, UnitsStandFarAboveTheNamesWhereTheirRowSaysSo) {
+  for (const char* head : {"Model;DPO\nUnits;mV;mm\nSource;CH1;CH2\nt;U;x\n", "Unit:;mV;mm\nt;U;x\n",
+                           "t;U;x\nUnit;mV;mm\nWhat;drive;stem\n", "Einheit;mV;mm\n\nt;U;x\n"})
+    expect_three_rows(read(head + kRows, map_of("t", "ms")));
+}
+
+TEST_F(LoggerLayouts, AMachineCalledByAUnitIsNone) {
+  const Recording recording = read("Unit;A\nShift;2\nt [ms];U [mV];x [mm]\n" + kRows);
+  expect_three_rows(recording);
+}
+
+std::string labview_file(const std::string& x_columns, const std::string& names, const std::string& rows) {
+  return "LabVIEW Measurement\nWriter_Version\t2\nSeparator\tTab\nDecimal_Separator\t.\nX_Columns\t" + x_columns +
+         "\nTime_Pref\tRelative\nDate\t2031/04/12\nTime\t03:00:00.25\n***End_of_Header***\n\nChannels\t2\n"
+         "Samples\t3\t3\nDate\t2031/04/12\t2031/04/12\nTime\t03:00:00.25\t03:00:00.25\nY_Unit_Label\tmV\tmm\n"
+         "X_Dimension\tTime\tTime\nX0\t0.0E+0\t0.0E+0\nDelta_X\t0.5\t0.5\n***End_of_Header***\n" +
+         names + rows;
+}
+
+TEST_F(LoggerLayouts, APreambleWithNumbersIsNoTable) {
+  const std::string names = "X_Value\tU\tx\tComment\n";
+  expect_three_rows(read(labview_file("One", names, "0\t1\t60\n0.5\t2\t59\n1\t4\t57\n"), map_of("X_Value", "s")));
+  EXPECT_THAT(error_of(labview_file("No", names, "\t1\t60\n\t2\t59\n\t4\t57\n"), map_of("X_Value", "s")),
+              AllOf(HasSubstr("row 21, column 1 (X_Value, channel time)"),
+                    HasSubstr("the cell is empty; export the log with its times, as LabVIEW does with one X column")));
+  const ChannelMap map = {.columns = {{"time", {.column = "x-axis", .unit = "s"}},
+                                      {"motor_voltage", {.column = "1", .unit = {}}},
+                                      {"position", {.column = "2", .unit = {}}}},
+                          .log = {}};
+  expect_three_rows(read("x-axis,1,2\nsecond,mV,mm\n0,1,60\n0.5,2,59\n1,4,57\n", map));
+}
+
+// A word in the place of a first time is the table's: its samples would be lost, and nobody would know.
+TEST_F(LoggerLayouts, AFirstRowThatBeginsWithAWordIsRefused) {
+  EXPECT_THAT(error_of("t [s];U [mV];x [mm]\nstart;1;60\n0.5;2;59\n1;4;57\n"), HasSubstr("row 2, column 1"));
+}
+
+TEST_F(LoggerLayouts, ASecondHeaderIsRefused) {
+  EXPECT_THAT(error_of("t [s];U [mV];x [mm]\n0;1;60\n0.5;2;59\n\nt [s];U [mV];x [m]\n1;4;57\n1.5;4;57\n"),
+              HasSubstr("row 5, column 1"));
+}
+
+TEST_F(LoggerLayouts, ACountOfSamplesIsATimeWithAScale) {
+  ChannelMap map = map_of("n", "s");
+  map.columns["time"].scale = 0.5, map.columns["time"].is_scaled = true;
+  expect_three_rows(read("n;U [mV];x [mm]\n0;1;60\n1;2;59\n2;4;57\n", map));
+  map.columns["time"].offset = 3.0;
+  EXPECT_THAT(read("n;U [mV];x [mm]\n0;1;60\n1;2;59\n2;4;57\n", map).samples.time_s, ElementsAre(3.0, 3.5, 4.0));
+  map.columns["time"].unit = "iso8601";
+  EXPECT_THAT(error_of("n;U [mV];x [mm]\n2031-04-12T03:00:00Z;1;60\n", map),
+              HasSubstr("channel time: 'iso8601': is a clock, which takes no scale"));
+  EXPECT_THAT(error_of("n;U [mV];x [mm]\n0;1;60\n1;2;59\n", map_of("n", "Sequence")),
+              HasSubstr("of a count of samples: {unit: s, scale: SECONDS_BETWEEN_SAMPLES}"));
+}
+
+TEST_F(LoggerLayouts, ALeapSecondIsNamed) {
+  const std::string rule = "is a leap second, which has no place of its own";
+  EXPECT_THAT(error_of("t;U [mV];x [mm]\n2016-12-31T23:59:59.5Z;1;60\n2016-12-31T23:59:60.0Z;2;59\n"
+                       "2016-12-31T23:59:60.5Z;4;57\n",
+                       map_of("t", "iso8601")),
+              AllOf(HasSubstr("row 3, column 1"), HasSubstr(rule), HasSubstr("log the time in s")));
+  EXPECT_THAT(error_of("t;U [mV];x [mm]\n31.12.2016 23:59:59.5;1;60\n31.12.2016 23:59:60.0;2;59\n",
+                       map_of("t", "%d.%m.%Y %H:%M:%S")),
+              AllOf(HasSubstr("row 3, column 1"), HasSubstr(rule)));
+}
+
+TEST_F(LoggerLayouts, AClockWithoutADayGoesOnPastMidnight) {
+  const Recording recording =
+      read("t;U [mV];x [mm]\n23:59:59.5;1;60\n00:00:00.0;2;59\n00:00:00.5;4;57\n", map_of("t", "%H:%M:%S"));
+  expect_three_rows(recording);
+  EXPECT_FALSE(recording.start_time);
+  EXPECT_THAT(error_of("t;U [mV];x [mm]\n23:58:00;1;60\n23:58:10;1;60\n00:00:00;2;59\n", map_of("t", "%H:%M:%S")),
+              HasSubstr("time goes back"))
+      << "more than a minute is no step: a count from the begin starts anew";
+}
+
+TEST_F(LoggerLayouts, DaysOfMatlabAndTimesSinceADate) {
+  const Recording days =
+      read("t;U [mV];x [mm]\n736696.25;1;60\n736696.250005787;2;59\n736696.250011574;4;57\n", map_of("t", "datenum"));
+  ASSERT_THAT(days.samples.time_s, SizeIs(3));
+  EXPECT_NEAR(days.samples.time_s[2], 1.0, 1e-4);  // a day's 16th digit
+  EXPECT_EQ(format_utc(*days.start_time), "2017-01-01T06:00:00Z");
+  const Recording since =
+      read("t;U [mV];x [mm]\n0;1;60\n0.5;2;59\n1;4;57\n", map_of("t", "seconds since 2031-04-12 03:00:00"));
+  expect_three_rows(since);
+  EXPECT_EQ(format_utc(*since.start_time), "2031-04-12T03:00:00Z");
+  EXPECT_THAT(error_of("t;U;x\n0;1;60\n1;1;60\n", map_of("t", "seconds since yesterday")),
+              HasSubstr("must read as 'days since 2031-04-12'"));
+}
+
+TEST_F(LoggerLayouts, FortransDoublePrecision) {
+  expect_three_rows(
+      read("# t[s] U[mV] x[mm]\n0.0D+00 1.0D+00 6.0D+01\n5.0D-01 2.0D+00 5.9D+01\n1.0D+00 4.0d+00 5.7d+01\n"));
+}
+
+TEST_F(LoggerLayouts, AMinusAsItIsPrinted) {
+  const Recording recording = read("t [s];U [mV];x [mm]\n0;−1;60\n0,5;−2,5;59\n");
+  EXPECT_THAT(recording.samples.find("motor_voltage")->values, ElementsAre(DoubleEq(-0.001), DoubleEq(-0.0025)));
+}
+
+TEST_F(LoggerLayouts, ASummaryBelowTheTableIsRefusedWithItsRemedy) {
+  EXPECT_THAT(error_of("t [s];U [mV];x [mm]\n0;1;60\n0.5;2;59\nMin;1;59\n"),
+              AllOf(HasSubstr("row 4, column 1 (t [s], channel time): 'Min': must be a number"),
+                    HasSubstr("take the row out where it is no sample")));
+}
+
+TEST_F(LoggerLayouts, WordsForNoValueHaveDigitsToo) {
+  for (const char* word : {"1.#INF", "1.#QNAN", "-1.#IND", "#DIV/0!", "OL"}) {
+    const std::string text = std::string("t [s];U [mV];x [mm]\n0;1;60\n0.25;1;") + word + "\n0.5;2;59\n1;4;57\n";
+    EXPECT_THAT(error_of(text), AllOf(HasSubstr(std::string("row 3, column 3 (x [mm], channel position): '") + word),
+                                      HasSubstr("log: {incomplete_rows: skip} leaves such rows out")));
+    ChannelMap map = map_of("t", "");
+    map.log.incomplete_rows = "skip";
+    expect_three_rows(read(text, map));
+  }
+}
+
+}  // namespace
+}  // namespace sealwatch

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <fstream>
 #include <functional>
 
@@ -13,10 +16,12 @@
 namespace sealwatch {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 constexpr const char* kService = "health_assessment";
@@ -444,6 +449,69 @@ TEST_F(Mend, AFileThatIsNoDatabaseAnyMoreIsMadeAgain) {
     ASSERT_THAT(journal.quarantine().value(), SizeIs(1));
     EXPECT_THAT(journal.quarantine().value().at(0).reason, HasSubstr("damaged-"));
   }
+}
+
+/// A user who has a directory with a journal in which somebody set owners and modes.
+class Rights : public Mend {
+ protected:
+  static constexpr uid_t kNobody = 65534;
+
+  Rights() : file_((place_.directory() / "journal.db").string()) {
+    if (::geteuid() != 0) return;
+    EXPECT_EQ(::chown(place_.directory().c_str(), kNobody, kNobody), 0);
+    for (const auto& entry : std::filesystem::directory_iterator(place_.directory()))
+      EXPECT_EQ(::chown(entry.path().c_str(), kNobody, kNobody), 0);
+  }
+  /// What he finds in it, and what is told of it: root may read everything.
+  [[nodiscard]] std::string opened_by_the_user() const {
+    const std::string said = (place_.directory() / "said").string();
+    const pid_t child = ::fork();
+    if (child == 0) {
+      if (::geteuid() == 0 && (::setgid(kNobody) != 0 || ::setuid(kNobody) != 0)) ::_exit(1);
+      auto journal = Journal::open(place_.connection(), kService);
+      std::ofstream stream(said);
+      if (!journal) stream << journal.error().describe();
+      if (journal) stream << outputs(*journal).size() << " outputs";
+      if (journal)
+        for (const SetAside& one : journal->quarantine().value()) stream << "; " << one.reason;
+      stream.close();
+      ::_exit(0);
+    }
+    int status = 1;
+    EXPECT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0);
+    std::ifstream stream(said);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  void make_it_roots(::mode_t mode) const {
+    EXPECT_EQ(::chown(file_.c_str(), 0, 0), 0);
+    EXPECT_EQ(::chmod(file_.c_str(), mode), 0);
+  }
+  std::string file_;
+};
+
+TEST_F(Rights, AFileOfNoRightsGetsItsUsersBack) {
+  ASSERT_EQ(::chmod(file_.c_str(), 0), 0);
+  EXPECT_THAT(opened_by_the_user(), AllOf(HasSubstr("2 outputs"), HasSubstr("have their rights back")));
+  EXPECT_FALSE(std::filesystem::exists(file_ + ".damaged-1"));
+  EXPECT_THAT(opened_by_the_user(), HasSubstr("2 outputs")) << "and stays so";
+}
+
+TEST_F(Rights, AnothersFileIsCopied) {
+  if (::geteuid() != 0) GTEST_SKIP() << "it takes root to give a file to another user";
+  make_it_roots(0644);
+  EXPECT_THAT(opened_by_the_user(), AllOf(HasSubstr("2 outputs"), HasSubstr("a copy is in their place")));
+  EXPECT_TRUE(std::filesystem::exists(file_ + ".damaged-1"));
+}
+
+TEST_F(Rights, AnothersFileThatMayNotBeReadIsKeptAsideAndMadeAgain) {
+  if (::geteuid() != 0) GTEST_SKIP() << "it takes root to give a file to another user";
+  make_it_roots(0600);
+  EXPECT_THAT(opened_by_the_user(),
+              AllOf(HasSubstr("0 outputs"), HasSubstr("may not be read by this user"), Not(HasSubstr("was removed"))));
+  EXPECT_TRUE(std::filesystem::exists(file_ + ".damaged-1"));
+  EXPECT_THAT(opened_by_the_user(), HasSubstr("0 outputs"));
+  EXPECT_FALSE(std::filesystem::exists(file_ + ".damaged-2"));
 }
 
 /// The file as it is closed, without its log; each time from the beginning.

@@ -26,10 +26,9 @@ Result<LayerSet> LayerSet::make(const Configuration& configuration) {
     return fail(valid.error());
   if (const auto valid = advisory_generation::AdvisoryGeneration::make(configuration, configuration.advice); !valid)
     return fail(valid.error());
-  const auto add = [&set, &configuration](auto make) {
-    set.makers_.emplace_back([make, &configuration](const std::string& asset_id) -> std::unique_ptr<Layer> {
-      return make(configuration_of(asset_id, configuration));
-    });
+  const auto add = [&set, of_asset = configurations_of_assets(configuration)](auto make) {
+    set.makers_.emplace_back(
+        [make, of_asset](const std::string& asset_id) -> std::unique_ptr<Layer> { return make(of_asset(asset_id)); });
   };
   add([](const Configuration& c) { return std::make_unique<DataAcquisition>(c.assets); });
   add([](const Configuration& c) { return std::make_unique<DataManipulation>(c.assets); });

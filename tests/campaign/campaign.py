@@ -3,7 +3,7 @@
 bits turned in every table of their journals, a full disk, a disk that cannot be written, clocks that are set, a bad
 network between two hosts; and the floods, the poison and the years under which they must stay as they are. One line for each trial, with
 its seed: the same seed makes the same choices, though not the same moments.
-Usage: campaign.py BIN_DIRECTORY [kills|bits|damages|full_disk|read_only|clock_steps|two_hosts|flood|poison|years|all] [--seed N]
+Usage: campaign.py BIN_DIRECTORY [kills|bits|damages|full_disk|read_only|clock_steps|two_hosts|flood|poison|years|history|all] [--seed N]
            [--kills N] [--bits N] [--damages N] [--tests N] [--steps N] [--seconds N] [--assets N] [--live N] [--floods NAMES]
 """
 import argparse
@@ -19,6 +19,7 @@ import resource
 import select
 import shutil
 import signal
+import socket
 import sqlite3
 import struct
 import subprocess
@@ -35,11 +36,15 @@ SERVICES = ["data-acquisition", "data-manipulation", "state-detection", "health-
             "advisory-generation"]
 DOMAIN = 96
 PATIENCE_S = float(os.environ.get("CAMPAIGN_PATIENCE_S", 240.0))  # longer where the machine has much else to do
-TRIALS = ["kills", "bits", "damages", "full_disk", "read_only", "clock_steps", "two_hosts", "flood", "poison", "years"]
+TRIALS = ["kills", "bits", "damages", "full_disk", "read_only", "clock_steps", "two_hosts", "flood", "poison", "years",
+          "history"]
 LIVE_DOMAIN = 97  # of tests/perf/services/live_latency.cpp
 MOST_STATUS_KB = 200.0      # what `status --json` says of six services, whatever strangers sent
 MOST_GROWTH_MB = 100.0      # of a service under a flood: its queues and inboxes, all of them bounded
+MOST_MORE_PAGES = 100       # beside twice as many, for a statement of a start on a longer history
 LONGEST_START_S = 20.0      # until all services have their past, after whatever history
+# What is done for so long and no longer: assets are recalled and their last word published, indexes looked at.
+BOUNDED = ("FROM outputs WHERE asset_id =", "FROM outputs WHERE ordinal", "FROM outputs WHERE sequence", "NOT INDEXED")
 FINDING = re.compile(r"\w+Sanitizer: .*|runtime error: .*")  # of a build with sanitizers, whatever its exit status
 TABLES = {"inputs": ["message_id", "payload", "consumed", "pst_id"], "outputs": ["payload", "asset_id", "checksum"],
           "positions": ["sequence", "writer_id"], "quarantine": ["reason"], "acts": ["who", "hash"],
@@ -666,6 +671,41 @@ class Campaign:
         if descriptors > rows[0][2] + 4 or memory > rows[0][1] + MOST_GROWTH_MB or start > LONGEST_START_S:
             raise Failed(told)
         return f"{len(names)} assets, {tests * len(names)} tests in {time.monotonic() - begun:.0f} s: {told}"
+
+    def history(self):
+        """On a journal of three times as many tests a service looks at as many pages before it is ready."""
+        assets, few, many = 8, 16, 48  # more than it looks at for damage
+        told = []
+        for service in SERVICES:
+            short, long = (self.pages_of_start(service, assets, turns) for turns in (few, many))
+            grown = [f"{text}: {short.get(text, 0)} and {pages}" for text, pages in long.items()
+                     if pages > 2 * short.get(text, 0) + MOST_MORE_PAGES and not any(one in text for one in BOUNDED)]
+            if grown:
+                raise Failed(f"{service} looks at more pages the longer its history: {grown}")
+            told.append(f"{service} {sum(short.values())} and {sum(long.values())}")
+        return f"pages looked at on {few} and {many} x {len(self.files)} tests of {assets} assets: {', '.join(told)}"
+
+    def pages_of_start(self, service, assets, turns):
+        """By statement: what its start looked at in a journal of so many assets, with all tests in each turn."""
+        state = self.folder / f"history-{service}-{turns}"
+        state.mkdir()
+        subprocess.run([self.binaries / "perf/long_history", self.kept / database(service), state / database(service), "XT03-MV2",
+                        str(assets), str(turns)], check=True, stdout=subprocess.DEVNULL)
+        shim = {"PAGES_READ": str(state / "pages"), "LD_PRELOAD": str(self.binaries / "campaign/libpages_read.so")}
+        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
+            manager.bind(str(state / "notify"))
+            manager.settimeout(PATIENCE_S)
+            with World(self.binaries, self.folder, state, environment=dict(shim, NOTIFY_SOCKET=str(state / "notify"))) as world:
+                world.start(service)
+                while b"READY=1" not in manager.recv(4096):
+                    pass
+                lines = (state / "pages").read_text().splitlines()
+        pages = {}
+        for count, text in (line.split("\t", 1) for line in lines if "\t" in line):
+            text = re.sub(r"\d+", "N", text)
+            pages[text] = pages.get(text, 0) + int(count)
+        shutil.rmtree(state)
+        return pages
 
     def start_up_s(self, world):
         """All are left running."""

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <memory>
+#include <utility>
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/message/topics.hpp"
@@ -318,10 +321,19 @@ Checked<Configuration> load_configuration(const std::string& path, const Configu
   return configuration;
 }
 
-Configuration configuration_of(const std::string& asset_id, const Configuration& configuration) {
-  Configuration of_asset = configuration;
-  std::erase_if(of_asset.assets, [&](const AssetConfig& asset) { return asset.asset_id != asset_id; });
-  return of_asset;
+/// Those of a thousand assets do not each begin as a copy of all: that took longer than to read their files.
+std::function<Configuration(const std::string& asset_id)> configurations_of_assets(const Configuration& configuration) {
+  auto common = std::make_shared<Configuration>(configuration);
+  auto assets = std::make_shared<std::map<std::string, AssetConfig>>();
+  for (AssetConfig& asset : std::exchange(common->assets, {})) {
+    const std::string asset_id = asset.asset_id;
+    assets->emplace(asset_id, std::move(asset));
+  }
+  return [common, assets](const std::string& asset_id) {
+    Configuration of_asset = *common;
+    if (const auto asset = assets->find(asset_id); asset != assets->end()) of_asset.assets.push_back(asset->second);
+    return of_asset;
+  };
 }
 
 }  // namespace sealwatch

@@ -2,6 +2,7 @@
 // starts. Reference of all keys: docs/operations.md.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,7 +31,8 @@ struct ConfigurationOverrides {
 /// The six services, in the order of the layers.
 [[nodiscard]] const std::vector<std::string>& service_names();
 
-/// The same without any asset but this.
-[[nodiscard]] Configuration configuration_of(const std::string& asset_id, const Configuration& configuration);
+/// What gives the same for each asset, without any asset but this.
+[[nodiscard]] std::function<Configuration(const std::string& asset_id)> configurations_of_assets(
+    const Configuration& configuration);
 
 }  // namespace sealwatch

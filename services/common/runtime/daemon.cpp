@@ -167,8 +167,8 @@ RunnerOptions runner_options(const DaemonParts& parts, const Configuration& conf
 }
 
 LayerMaker layer_maker(const DaemonParts& parts, const Configuration& configuration, const Clock& clock) {
-  return [&parts, &configuration, &clock](const std::string& asset_id) {
-    return parts.make_layer(configuration_of(asset_id, configuration), clock);
+  return [&parts, of_asset = configurations_of_assets(configuration), &clock](const std::string& asset_id) {
+    return parts.make_layer(of_asset(asset_id), clock);
   };
 }
 

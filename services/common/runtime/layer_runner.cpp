@@ -61,6 +61,7 @@ Status LayerRunner::start() {
   if (!positions) return fail(positions.error());
   for (const StreamPosition& known : *positions) {
     committed_[{known.topic, known.writer_id}] = known.sequence;
+    kept_streams_.insert({known.topic, known.writer_id});
     strangers_.expect(known.writer_id);
   }
   reader_ = std::make_unique<StreamReader>(journal_.writer_id(), *positions, options_.streams);
@@ -174,6 +175,8 @@ Status LayerRunner::in_batch(const std::function<Status()>& work, Survives survi
   }
   for (const auto& [stream, sequence] : uncommitted_) committed_[stream] = sequence;
   uncommitted_.clear();
+  if (committed_.size() > kept_streams_.size() + options_.most_positions)
+    std::erase_if(committed_, [this](const auto& one) { return !kept_streams_.contains(one.first); });
   // Told before it is sent: a reader must never see a message that the heartbeat does not know yet.
   report_progress();
   send_outbox();
@@ -273,6 +276,7 @@ Status LayerRunner::take(Message message, const ActRecord* record) {
   if (is_numbered(message)) {
     stream = {std::string(name_of(topic_of(message))), header.writer_id, header.stream_sequence};
     uncommitted_[{stream.topic, stream.writer_id}] = stream.sequence;
+    if (kept_streams_.size() < options_.most_positions) kept_streams_.insert({stream.topic, stream.writer_id});
   }
   const bool from_bus = topic_of(message) == Topic::raw_samples && is_numbered(message);
   if (from_bus && !strangers_.admits(message)) return {};
@@ -282,6 +286,7 @@ Status LayerRunner::take(Message message, const ActRecord* record) {
     return {};
   }
   if (is_false) return {};
+  if (is_numbered(message)) kept_streams_.insert({stream.topic, stream.writer_id});
   if (Status recalled = recall(asset_of(message)); !recalled) return recalled;
   const auto id = identify_input(message);
   if (!id) return fail(id.error());
@@ -423,8 +428,10 @@ Status LayerRunner::store_batch() {
   if (Status status = record_acts(); !status) return status;
   if (Status status = keep({.outputs = std::exchange(records_, {}), .consumed = {}}); !status) return status;
   if (Status status = keep_refused_tests(); !status) return status;
-  for (const auto& [stream, sequence] : uncommitted_)
+  for (const auto& [stream, sequence] : uncommitted_) {
+    if (!kept_streams_.contains(stream)) continue;
     if (Status status = journal_.set_position({stream.first, stream.second, sequence}); !status) return status;
+  }
   for (LaneResult& result : results_)
     if (Status status = keep(std::move(result.conclusion)); !status) return status;
   for (const Message& message : std::exchange(renumbered_, {}))

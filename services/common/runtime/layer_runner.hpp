@@ -85,6 +85,8 @@ struct RunnerOptions {
   std::vector<std::string> assets = {};
   AssetLanes::Options lanes = {};
   StreamReader::Limits streams = {};
+  /// Streams whose positions are kept; beyond, only of writers of whom something was taken: strangers invent names.
+  std::size_t most_positions = 4096;
   std::map<std::string, UtcTime> commissioned = {};  ///< by asset; no test is older
   /// Whether a clock of this machine that was set or follows no time source is an alarm of this service: tests are
   /// dated by it.
@@ -359,9 +361,8 @@ class LayerRunner {
   std::map<std::string, std::shared_ptr<const Message>> awaiting_;        ///< acts that wait for a second person, by id
   std::map<std::string, InputState> no_longer_awaiting_;  ///< ids of those whose wait is over, of this batch
   std::map<std::string, std::size_t> acts_ahead_;         ///< acts that wait for what they mean, by asset
-  std::set<std::string> awaits_quiet_;      ///< of those assets, the ones with acts that were fetched back
-  std::set<std::string> heard_of_;          ///< of those assets, the ones of which something new is known
-  std::size_t acts_on_unknown_assets_ = 0;  ///< recorded while the alarm of them stands
+  std::set<std::string> awaits_quiet_;  ///< of those assets, the ones with acts that were fetched back
+  std::set<std::string> heard_of_;      ///< of those assets, the ones of which something new is known
   RefusedActs refused_acts_;
   std::vector<OperatorAct> acts_;  ///< of the running batch
   std::vector<Message> records_;   ///< of the running batch: own act_records
@@ -382,7 +383,8 @@ class LayerRunner {
   bool tells_of_set_back_ = false;
   std::vector<LaneResult> results_;  ///< not yet in the journal
   Outbox outbox_;
-  std::map<Key, std::uint64_t> committed_;    ///< positions in the journal
+  std::map<Key, std::uint64_t> committed_;    ///< positions, as far as they are kept in the journal
+  std::set<Key> kept_streams_;                ///< those
   std::map<Key, std::uint64_t> uncommitted_;  ///< positions of the running batch
   LatestOutputs latest_;
   std::set<std::string> forgotten_;  ///< assets whose past was not recalled yet

@@ -31,7 +31,6 @@ constexpr std::ptrdiff_t kMostRefusedSenders = 4;  ///< of an asset
 constexpr std::chrono::seconds kFloodIsOver{60};
 /// It is raised every second while they are missing.
 constexpr std::chrono::seconds kBlocksCame{5};
-constexpr std::size_t kMostActsOnUnknownAssets = 64;
 /// A service beats once a second.
 constexpr std::chrono::seconds kRivalIsSilent{10};
 
@@ -78,8 +77,8 @@ void LayerRunner::note_strangers(const std::vector<StrangerWatch::Stranger>& str
   }
 }
 
-/// One for all of them: whoever invents assets invents many. What people said of them stands in the audit trail, the
-/// first so often.
+/// One for all of them: whoever invents assets invents many. What people said of them stands in the audit trail as all
+/// that is refused does: not without end.
 void LayerRunner::note_unknown_asset(const Message& message, const std::string& refused) {
   const bool is_new = alarms_.raise({.kind = kUnknownAsset,
                                      .asset_id = {},
@@ -88,12 +87,8 @@ void LayerRunner::note_unknown_asset(const Message& message, const std::string& 
                                      .text = refused,
                                      .since_ns = clock_.now().nanoseconds},
                                     steady_now() + options_.strangers_stand);
-  if (is_new) acts_on_unknown_assets_ = 0;
-  if (acts_on_unknown_assets_ < kMostActsOnUnknownAssets)
-    if (auto act = act_of(message, clock_.now(), refused)) {
-      ++acts_on_unknown_assets_;
-      acts_.push_back(std::move(*act));
-    }
+  if (auto act = act_of(message, clock_.now(), refused); act && keeps_refused(message, refused))
+    acts_.push_back(std::move(*act));
   if (!is_new) return;
   note_error(refused);
   log_event(LogLevel::error, "unknown asset", {{"error", refused}});

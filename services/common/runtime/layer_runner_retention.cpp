@@ -44,6 +44,10 @@ Result<bool> LayerRunner::drop_old_samples(const Retention::Sample& sample) {
   std::vector<Journal::Kept> over;
   for (const Journal::Kept& one : std::exchange(kept.needed, {}))
     (is_needed(sample, one) ? kept.needed : over).push_back(one);
+  const auto dropped_before = journal_.dropped_samples(sample.topic, kept.looked_at);
+  if (!dropped_before) return fail(dropped_before.error());
+  const bool passes_over = *dropped_before > kept.looked_at;
+  kept.looked_at = *dropped_before;
   // To look at one means to read its samples: most of the time none is old enough, and one tells that.
   for (const std::size_t most : {std::size_t{1}, kAtOnce}) {
     const auto next = journal_.kept_samples(sample.topic, kept.looked_at, most);
@@ -56,7 +60,7 @@ Result<bool> LayerRunner::drop_old_samples(const Retention::Sample& sample) {
     }
     if (next->empty() || kept.looked_at < next->back().sequence) break;
   }
-  if (over.empty()) return false;
+  if (over.empty()) return passes_over;
   log_event(LogLevel::info, "samples dropped",
             {{"topic", std::string(name_of(sample.topic))}, {"messages", std::to_string(over.size())}});
   const Status dropped = in_batch([&] {

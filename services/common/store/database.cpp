@@ -89,15 +89,17 @@ std::string Journal::Database::make_anew(const std::string& connection) {
   return aside;
 }
 
-/// A file in which SQLite cannot find its way, or that is another's, is moved aside, and the journal made again: the
-/// neighbours have their messages, and of the old file is kept what can be read of what people did.
+/// A file in which SQLite cannot find its way, or that is another's or may not be read, is moved aside, and the journal
+/// made again: the neighbours have their messages, and of the old file is kept what can be read of what people did.
 void Journal::Database::open(const std::string& connection) {
   if (connection.starts_with("sqlite3://")) take_file(file_of(connection));
+  const auto opened_up = file.empty() ? std::nullopt : make_accessible(file);
   try {
     if (!file.empty() && is_known_damaged(file)) throw std::runtime_error("malformed when it was last used");
     connect(connection);
     make_ready();
-    compare_with_last();
+    if (opened_up) tell_of_journal(*opened_up);
+    if (!opened_up || !is_made) compare_with_last();
   } catch (const OtherJournal& other) {
     const std::string aside = make_anew(connection);
     tell_of_journal("the journal of " + other.writer_id + " was in the place of this service's and is now " + aside +

@@ -158,7 +158,9 @@ class Journal {
     std::string pst_id;
     UtcTime concluded;
   };
-  /// Those of one topic behind `after`, the oldest first.
+  /// The last of those of one topic right behind `after` whose samples are dropped, as far as it looks; `after`: none.
+  [[nodiscard]] Result<std::uint64_t> dropped_samples(Topic topic, std::uint64_t after);
+  /// Those of one topic behind `after`, the oldest first, as far as it looks.
   [[nodiscard]] Result<std::vector<Kept>> kept_samples(Topic topic, std::uint64_t after, std::size_t most);
   /// Drops the samples of an output for ever; all else that it says stays, and its producer says so (is_expired).
   [[nodiscard]] Status expire(Topic topic, std::uint64_t sequence);

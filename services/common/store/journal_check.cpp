@@ -42,8 +42,11 @@ Indexed look_up_outputs(soci::session& sql, long long after) {
                  " AND ordinal = one.ordinal AND pst_id = one.pst_id AND topic = one.topic)"
                  " AND EXISTS(SELECT 1 FROM outputs WHERE message_id = one.message_id AND +ordinal = one.ordinal)"
                  " AND EXISTS(SELECT 1 FROM outputs WHERE topic = one.topic AND sequence = one.sequence"
-                 " AND +ordinal = one.ordinal)",
-                 "SELECT ordinal, topic, sequence, message_id, asset_id, pst_id FROM outputs", after);
+                 " AND +ordinal = one.ordinal)"
+                 " AND (coalesce(one.checksum, '') <> 'damaged' OR EXISTS(SELECT 1 FROM outputs INDEXED BY"
+                 " outputs_damaged WHERE checksum = 'damaged' AND asset_id = one.asset_id AND pst_id = one.pst_id"
+                 " AND ordinal = one.ordinal))",
+                 "SELECT ordinal, topic, sequence, message_id, asset_id, pst_id, checksum FROM outputs", after);
 }
 
 Indexed look_up_inputs(soci::session& sql, long long after) {
@@ -52,8 +55,12 @@ Indexed look_up_inputs(soci::session& sql, long long after) {
                  " AND (one.consumed <> 0 OR EXISTS(SELECT 1 FROM inputs INDEXED BY inputs_open WHERE consumed = 0"
                  " AND asset_id = one.asset_id AND receipt = one.receipt))"
                  " AND (one.sequence <> 0 OR EXISTS(SELECT 1 FROM inputs INDEXED BY inputs_of_no_stream"
-                 " WHERE sequence = 0 AND topic = one.topic AND asset_id = one.asset_id AND receipt = one.receipt))",
-                 "SELECT receipt, message_id, topic, asset_id, consumed, sequence FROM inputs", after);
+                 " WHERE sequence = 0 AND topic = one.topic AND asset_id = one.asset_id AND receipt = one.receipt))"
+                 " AND (NOT one.kept OR EXISTS(SELECT 1 FROM inputs INDEXED BY inputs_kept WHERE (payload IS NOT NULL"
+                 " OR consumed <> 1) AND receipt = one.receipt))",
+                 "SELECT receipt, message_id, topic, asset_id, consumed, sequence, payload IS NOT NULL OR consumed <> 1"
+                 " AS kept FROM inputs",
+                 after);
 }
 
 }  // namespace

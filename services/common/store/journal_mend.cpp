@@ -40,17 +40,19 @@ struct DamagedRow {
   std::string expected;  ///< checksum of what stands in the row
 };
 
-/// How long a start looks at outputs. The rest is looked at while the service runs (Journal::check_some).
+/// How long a start looks at outputs, and at how many: those without samples are passed over, and no time is looked at
+/// meanwhile. The rest is looked at while the service runs (Journal::check_some).
 constexpr std::chrono::milliseconds kLook{500};
+constexpr const char* kSomeOutputs = "(SELECT * FROM outputs ORDER BY ordinal LIMIT 1000) AS earliest";
 
-/// Rows of a table that are not as they were written; those of version 1 have no checksum. Up to `end`: `looked_at` is
-/// the last.
-std::vector<DamagedRow> damaged_rows(soci::session& sql, bool outputs, steady_clock::time_point end,
+/// Rows of these outputs, or of inputs where none are named, that are not as they were written; those of version 1 have
+/// no checksum. Up to `end`: `looked_at` is the last.
+std::vector<DamagedRow> damaged_rows(soci::session& sql, const std::string& outputs, steady_clock::time_point end,
                                      long long& looked_at) {
   const std::string query =
-      outputs
-          ? "SELECT ordinal, topic, '', sequence, message_id, asset_id, pst_id, payload, checksum FROM outputs"
-            " WHERE checksum NOT IN ('damaged', 'expired') ORDER BY ordinal"
+      !outputs.empty()
+          ? "SELECT ordinal, topic, '', sequence, message_id, asset_id, pst_id, payload, checksum FROM " + outputs +
+                " WHERE checksum NOT IN ('damaged', 'expired') ORDER BY ordinal"
           : "SELECT receipt, topic, writer_id, sequence, message_id, asset_id, pst_id, payload, checksum FROM inputs"
             " WHERE payload IS NOT NULL OR consumed <> 1";
   DamagedRow row;
@@ -68,7 +70,7 @@ std::vector<DamagedRow> damaged_rows(soci::session& sql, bool outputs, steady_cl
     const bool known = has_payload == soci::i_ok && has_checksum != soci::i_ok;
     if (known) continue;
     const std::string expected =
-        outputs
+        !outputs.empty()
             ? checksum_of_output(row.order, row.topic, row.sequence, row.message_id, row.asset_id, row.pst_id, payload)
             : checksum_of_input(row.order, row.topic, row.message_id, row.asset_id, row.pst_id, payload);
     if (has_payload == soci::i_ok && checksum == expected) continue;
@@ -213,7 +215,7 @@ void Journal::Database::mend_inputs() {
   // A consumed input has no payload any more: one that has was not consumed.
   sql << "UPDATE inputs SET consumed = 0 WHERE payload IS NOT NULL AND consumed NOT IN (0, 2, 3, 4)";
   long long looked_at = 0;
-  for (const DamagedRow& row : damaged_rows(sql, false, steady_clock::time_point::max(), looked_at)) {
+  for (const DamagedRow& row : damaged_rows(sql, {}, steady_clock::time_point::max(), looked_at)) {
     if (put_checksum_right(sql, row, false)) continue;
     long long position = 0;
     sql << "SELECT coalesce(max(sequence), 0) FROM positions WHERE topic = :topic AND writer_id = :writer",
@@ -230,7 +232,7 @@ void Journal::Database::mend_inputs() {
 
 void Journal::Database::mend_outputs(bool all) {
   const auto end = all ? steady_clock::time_point::max() : steady_clock::now() + kLook;
-  for (const DamagedRow& row : damaged_rows(sql, true, end, checked)) {
+  for (const DamagedRow& row : damaged_rows(sql, all ? "outputs" : kSomeOutputs, end, checked)) {
     if (put_checksum_right(sql, row, true) || put_right(sql, row)) continue;
     sql << "UPDATE outputs SET checksum = 'damaged' WHERE ordinal = :ordinal", use(row.order, "ordinal");
     tell(sql, row, "damaged in the journal; it is concluded again from the neighbours' messages, where they have them");

@@ -10,15 +10,18 @@ namespace {
 using soci::into;
 using soci::use;
 
-/// The inputs that go with a message: all of its test, or itself alone.
 /// As the index of what is kept has it: the ids of twenty years are not looked through.
-constexpr const char* kAhead = " WHERE (payload IS NOT NULL OR consumed <> 1) AND consumed = 4";
+std::string kept_as(InputState state) {
+  return " WHERE (payload IS NOT NULL OR consumed <> 1) AND consumed = " + std::to_string(static_cast<int>(state));
+}
+
+/// The inputs that go with a message: all of its test, or itself alone.
 constexpr const char* kGoesWith = " AND (message_id = :id OR (pst_id = :pst AND pst_id <> '' AND asset_id = :asset))";
 
 /// Moves them from one state to another and says how many there were.
 long long move(soci::session& sql, const SetAside& message, InputState from, InputState to) {
-  const std::string query = "UPDATE inputs SET consumed = " + std::to_string(static_cast<int>(to)) +
-                            " WHERE consumed = " + std::to_string(static_cast<int>(from)) + kGoesWith;
+  const std::string query =
+      "UPDATE inputs SET consumed = " + std::to_string(static_cast<int>(to)) + kept_as(from) + kGoesWith;
   soci::statement statement =
       (sql.prepare << query, use(message.message_id, "id"), use(message.pst_id, "pst"), use(message.asset_id, "asset"));
   statement.execute(true);
@@ -120,9 +123,9 @@ Result<std::vector<Journal::Awaiting>> Journal::awaiting() {
     std::vector<std::pair<std::string, long long>> found;
     std::string id;
     long long received = 0;
-    soci::statement statement =
-        (database_->sql.prepare << "SELECT message_id, received FROM inputs WHERE consumed = 3 ORDER BY receipt",
-         into(id), into(received));
+    soci::statement statement = (database_->sql.prepare << "SELECT message_id, received FROM inputs" +
+                                                               kept_as(InputState::awaiting) + " ORDER BY receipt",
+                                 into(id), into(received));
     statement.execute();
     while (statement.fetch()) found.emplace_back(id, received);
     return found;
@@ -142,7 +145,7 @@ Result<std::map<std::string, std::size_t>> Journal::acts_ahead() {
     std::map<std::string, std::size_t> found;
     std::string asset_id;
     soci::statement statement =
-        (database_->sql.prepare << std::string("SELECT asset_id FROM inputs") + kAhead, into(asset_id));
+        (database_->sql.prepare << "SELECT asset_id FROM inputs" + kept_as(InputState::ahead), into(asset_id));
     statement.execute();
     while (statement.fetch()) ++found[asset_id];
     return found;
@@ -153,9 +156,10 @@ Result<std::vector<std::string>> Journal::acts_ahead(const std::string& asset_id
   return database_->guard("looking for acts that are ahead", [&] {
     std::vector<std::string> ids;
     std::string id;
-    soci::statement statement = (database_->sql.prepare << std::string("SELECT message_id FROM inputs") + kAhead +
-                                                               " AND asset_id = :asset ORDER BY receipt",
-                                 use(asset_id, "asset"), into(id));
+    soci::statement statement =
+        (database_->sql.prepare << "SELECT message_id FROM inputs" + kept_as(InputState::ahead) +
+                                       " AND asset_id = :asset ORDER BY receipt",
+         use(asset_id, "asset"), into(id));
     statement.execute();
     while (statement.fetch()) ids.push_back(id);
     return ids;

@@ -12,6 +12,9 @@ using soci::use;
 
 namespace {
 
+/// Outputs that are looked at at once: after twenty years hardly any of them has its samples.
+constexpr int kSomeSamples = 256;
+
 Message without_samples(Message message) {
   if (auto* block = std::get_if<SampleBlock>(&message)) block->samples = {};
   if (auto* window = std::get_if<TestWindow>(&message)) window->samples = {};
@@ -40,6 +43,27 @@ Result<double> Journal::used_bytes() {
   });
 }
 
+Result<std::uint64_t> Journal::dropped_samples(Topic topic, std::uint64_t after) {
+  return database_->guard("passing over dropped samples", [&] {
+    const std::string name(name_of(topic));
+    auto last = static_cast<long long>(after);
+    long long sequence = 0;
+    std::string checksum;
+    soci::indicator there = soci::i_null;
+    soci::statement statement = (database_->sql.prepare << "SELECT sequence, checksum FROM outputs WHERE topic = :topic"
+                                                           " AND sequence > :after ORDER BY sequence LIMIT " +
+                                                               std::to_string(kSomeSamples),
+                                 into(sequence), into(checksum, there), use(name, "topic"), use(last, "after"));
+    statement.execute();
+    bool is_dropped = true;
+    while (statement.fetch()) {
+      is_dropped = is_dropped && there == soci::i_ok && (checksum == kExpiredRow || checksum == kDamaged);
+      if (is_dropped) last = sequence;
+    }
+    return static_cast<std::uint64_t>(last);
+  });
+}
+
 Result<std::vector<Journal::Kept>> Journal::kept_samples(Topic topic, std::uint64_t after, std::size_t most) {
   return database_->guard("looking for old samples", [&] {
     const std::string name(name_of(topic));
@@ -50,9 +74,11 @@ Result<std::vector<Journal::Kept>> Journal::kept_samples(Topic topic, std::uint6
     long long sequence = 0;
     long long published = 0;
     soci::statement statement =
-        (database_->sql.prepare << "SELECT sequence, asset_id, pst_id, published FROM outputs WHERE topic = :topic AND"
-                                   " sequence > :after AND coalesce(checksum, '') NOT IN ('expired', 'damaged')"
-                                   " ORDER BY sequence LIMIT :most",
+        (database_->sql.prepare << "SELECT sequence, asset_id, pst_id, published FROM (SELECT * FROM outputs WHERE"
+                                   " topic = :topic AND sequence > :after ORDER BY sequence LIMIT " +
+                                       std::to_string(kSomeSamples) +
+                                       ") AS following WHERE coalesce(checksum, '') NOT IN ('expired', 'damaged')"
+                                       " ORDER BY sequence LIMIT :most",
          into(sequence), into(row.asset_id), into(row.pst_id), into(published), use(name, "topic"), use(begin, "after"),
          use(limit, "most"));
     statement.execute();

@@ -231,6 +231,21 @@ TEST(ConfigurationTest, TwoAssetsThatAreAlikeInTheIdsOfTheirTestsAreNoFault) {
   EXPECT_EQ(configuration->assets.size(), 2U);
 }
 
+TEST(ConfigurationTest, OfEachAssetHasThatAssetAloneAndAllElse) {
+  const YamlPlace place;
+  const std::string file = place.write("sealwatch.yaml", "domain: 7\n");
+  for (const char* asset : {"A", "B"})
+    place.write(std::string("assets/") + asset + ".yaml", std::string("asset_id: ") + asset + "\n");
+  const auto of_asset = configurations_of_assets(load_configuration(file).value());
+  for (const char* asset : {"B", "A"}) {
+    const Configuration one = of_asset(asset);
+    ASSERT_EQ(one.assets.size(), 1U);
+    EXPECT_EQ(one.assets[0].asset_id, asset);
+    EXPECT_EQ(one.domain, 7);
+  }
+  EXPECT_TRUE(of_asset("C").assets.empty());
+}
+
 TEST(ConfigurationTest, OneIdForTwoAssetsIsNamedWithBothFiles) {
   const YamlPlace place;
   const std::string file = place.write("sealwatch.yaml", "");

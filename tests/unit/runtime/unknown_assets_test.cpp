@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include <algorithm>
+
 #include "tests/unit/runtime/harness.hpp"
 
 namespace sealwatch::testing {
@@ -31,10 +33,18 @@ class UnknownAssets : public ::testing::Test {
   std::unique_ptr<Process> process() {
     RunnerOptions options = fast_options();
     options.assets = {"configured"};
+    return process(options);
+  }
+  std::unique_ptr<Process> process(const RunnerOptions& options) {
     auto made = std::make_unique<Process>(
         network_, [this] { return ++layers_, std::make_unique<CuttingLayer>(); }, place_.connection(), Fate(), options);
     made->start();
     return made;
+  }
+  void send(const std::string& asset_id, const std::string& writer_id) {
+    RawSamples block = test_of(asset_id, asset_id, 1);
+    block.header.writer_id = writer_id;
+    ASSERT_TRUE(bus_.publish(Message(block)));
   }
   void send(const std::string& asset_id) {
     ++sent_;
@@ -91,6 +101,21 @@ TEST_F(UnknownAssets, AreTakenUpToABoundAndTheOthersRefusedWithOneAlarm) {
   ASSERT_THAT(last_.alarms, SizeIs(1));
   EXPECT_EQ(last_.alarms[0].kind, "unknown_asset");
   EXPECT_THAT(last_.alarms[0].text, HasSubstr("asset 'invented-64' is not configured, and 64 such assets"));
+}
+
+/// What is refused of each is passed over; how far it was read is kept of so many.
+TEST_F(UnknownAssets, OfInventedWritersFillNoJournal) {
+  constexpr std::size_t kMost = 100;
+  RunnerOptions options = fast_options();
+  options.assets = {"configured"};
+  options.most_positions = kMost;
+  const auto service = process(options);
+  for (int k = 0; k < 500; ++k) send("invented-" + std::to_string(k), "writer-" + std::to_string(k));
+  send("configured", "sender");
+  ASSERT_TRUE(step_until([&] { return outputs_of(*service, "configured") > 0; }, [&] { step(*service, 1); }));
+  const std::vector<StreamPosition> positions = service->journal().positions().value();
+  EXPECT_LE(positions.size(), kMost + 1);
+  EXPECT_TRUE(std::ranges::any_of(positions, [](const StreamPosition& one) { return one.writer_id == "sender"; }));
 }
 
 TEST_F(UnknownAssets, ThatWereTakenStayOverARestart) {

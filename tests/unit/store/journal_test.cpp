@@ -224,6 +224,28 @@ TEST_P(JournalTest, AnOutputThatExpiresKeepsAllButItsSamples) {
   EXPECT_EQ(std::get<TestWindow>(again[2]).samples.time_s.size(), kRows);
 }
 
+/// Of twenty years hardly any output has its samples: nobody waits until all of them are looked at.
+TEST_P(JournalTest, ThoseThatExpiredArePassedOverLittleByLittle) {
+  constexpr std::uint64_t kExpired = 600;
+  Journal journal = open();
+  std::vector<Message> all;
+  for (std::uint64_t k = 0; k <= kExpired; ++k) all.push_back(window(std::to_string(k), "A", 1));
+  (void)conclude(journal, all);
+  place_.execute("UPDATE outputs SET checksum = 'expired' WHERE sequence <= " + std::to_string(kExpired));
+  EXPECT_THAT(journal.kept_samples(Topic::test_window, 0, 10).value(), IsEmpty()) << "so far it does not look";
+  std::uint64_t after = 0, looks = 0;
+  for (; after < kExpired; ++looks) {
+    const std::uint64_t last = journal.dropped_samples(Topic::test_window, after).value();
+    ASSERT_GT(last, after);
+    after = last;
+  }
+  EXPECT_GT(looks, 1U);
+  EXPECT_EQ(journal.dropped_samples(Topic::test_window, after).value(), kExpired);
+  const auto kept = journal.kept_samples(Topic::test_window, after, 10).value();
+  ASSERT_EQ(kept.size(), 1U);
+  EXPECT_EQ(kept[0].sequence, kExpired + 1);
+}
+
 TEST_P(JournalTest, OpenInputsComeBackInOrderOfReceiptUntilConsumed) {
   {
     Journal journal = open();

@@ -3,7 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <fstream>
+#include <functional>
 
 #include "services/common/store/damaged_file.hpp"
 #include "services/common/store/journal.hpp"
@@ -12,10 +16,12 @@
 namespace sealwatch {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 constexpr const char* kService = "health_assessment";
@@ -100,6 +106,38 @@ class Mend : public ::testing::Test {
     EXPECT_THAT(journal.quarantine().value(), SizeIs(2));
     EXPECT_TRUE(read(journal));
   }
+  void statement(const std::string& text) const {
+    soci::session sql(place_.connection());
+    sql << "PRAGMA writable_schema = ON";
+    sql << text;
+  }
+  /// What is written meanwhile, the index does not know.
+  void without_index(const std::string& index, const std::function<void()>& write) const {
+    statement("CREATE TABLE kept AS SELECT * FROM sqlite_master WHERE name = '" + index + "'");
+    statement("DELETE FROM sqlite_master WHERE name = '" + index + "'");
+    write();
+    statement("INSERT INTO sqlite_master SELECT * FROM kept");
+    statement("DROP TABLE kept");
+  }
+  static Status look(Journal& journal) {
+    for (int looks = 0; looks < 30; ++looks) {
+      const auto more = journal.check_some();
+      if (!more) return fail(more.error());
+      if (!*more) break;
+    }
+    return {};
+  }
+  void expect_found_and_mended(const std::string& index) const {
+    {
+      Journal journal = open();
+      const Status looked = look(journal);
+      ASSERT_FALSE(looked) << index;
+      EXPECT_THAT(looked.error().describe(), HasSubstr("does not find it"));
+    }
+    Journal journal = open();
+    EXPECT_TRUE(look(journal)) << index;
+    EXPECT_THAT(journal.quarantine().value(), SizeIs(1)) << "no row was damaged";
+  }
   static std::uint64_t position(Journal& journal) { return journal.positions().value().at(0).sequence; }
 
   Place place_;
@@ -147,17 +185,8 @@ TEST_F(Mend, NorAsAnAssetsPast) {
 // A bit of the index, while the row is whole: the index is made anew, and nothing of the past is lost.
 TEST_F(Mend, AnIndexThatSaysOtherwiseThanItsRowsIsMadeAnew) {
   const auto turned = [this] {  // the index keeps what stood in the row when it was last maintained
-    const auto statement = [this](const std::string& text) {
-      soci::session sql(place_.connection());
-      sql << "PRAGMA writable_schema = ON";
-      sql << text;
-    };
     statement("UPDATE outputs SET pst_id = 'uest 1' WHERE ordinal = 1");
-    statement("CREATE TABLE kept AS SELECT * FROM sqlite_master WHERE name = 'outputs_of_asset'");
-    statement("DELETE FROM sqlite_master WHERE name = 'outputs_of_asset'");
-    statement("UPDATE outputs SET pst_id = 'test 1' WHERE ordinal = 1");
-    statement("INSERT INTO sqlite_master SELECT * FROM kept");
-    statement("DROP TABLE kept");
+    without_index("outputs_of_asset", [this] { statement("UPDATE outputs SET pst_id = 'test 1' WHERE ordinal = 1"); });
   };
   std::vector<std::string> past;
   const auto read = [&past](Journal& journal) {
@@ -184,32 +213,6 @@ TEST_F(Mend, AnIndexThatSaysOtherwiseThanItsRowsIsMadeAnew) {
 
 /// Rows that an index leaves out are found by looking, before anything is concluded twice or not at all.
 TEST_F(Mend, AnIndexThatLeavesARowOutIsMadeAnew) {
-  const auto left_out = [this](const std::string& index, const std::string& table, const std::string& number,
-                               const std::string& row) {
-    const auto statement = [this](const std::string& text) {
-      soci::session sql(place_.connection());
-      sql << "PRAGMA writable_schema = ON";
-      sql << text;
-    };
-    const auto move = [&](const std::string& from, const std::string& to) {
-      statement("UPDATE " + table + " SET " + number + " = " + to + " WHERE " + number + " = " + from);
-    };
-    // The index follows the row away, and not back.
-    move(row, "-1");
-    statement("CREATE TABLE kept AS SELECT * FROM sqlite_master WHERE name = '" + index + "'");
-    statement("DELETE FROM sqlite_master WHERE name = '" + index + "'");
-    move("-1", row);
-    statement("INSERT INTO sqlite_master SELECT * FROM kept");
-    statement("DROP TABLE kept");
-  };
-  const auto look = [](Journal& journal) -> Status {
-    for (int looks = 0; looks < 30; ++looks) {
-      const auto more = journal.check_some();
-      if (!more) return fail(more.error());
-      if (!*more) break;
-    }
-    return Status();
-  };
   {
     Message of_no_stream = features(4);
     header_of(of_no_stream).stream_sequence = 0;
@@ -221,17 +224,25 @@ TEST_F(Mend, AnIndexThatLeavesARowOutIsMadeAnew) {
   for (const auto& [index, table, number, row] :
        {std::tuple{"outputs_of_asset", "outputs", "ordinal", "1"}, std::tuple{"inputs_open", "inputs", "receipt", "3"},
         std::tuple{"inputs_of_no_stream", "inputs", "receipt", "4"}}) {
-    left_out(index, table, number, row);
-    {
-      Journal journal = open();
-      const Status looked = look(journal);
-      ASSERT_FALSE(looked) << index;
-      EXPECT_THAT(looked.error().describe(), HasSubstr("does not find it"));
-    }
-    Journal journal = open();
-    EXPECT_TRUE(look(journal)) << index;
-    EXPECT_THAT(journal.quarantine().value(), SizeIs(1)) << "no row was damaged";
+    const auto move = [&, table = std::string(table), number = std::string(number)](const std::string& from,
+                                                                                    const std::string& to) {
+      statement("UPDATE " + table + " SET " + number + " = " + to + " WHERE " + number + " = " + from);
+    };
+    move(row, "-1");  // the index follows the row away, and not back
+    without_index(index, [&] { move("-1", row); });
+    expect_found_and_mended(index);
   }
+}
+
+TEST_F(Mend, NorIsOneOfFewRowsPassedOver) {
+  without_index("inputs_kept", [this] {
+    statement(
+        "INSERT INTO inputs SELECT 9, topic, writer_id, 9, 'features 9', asset_id, 'test 9', received, 0, payload,"
+        " NULL FROM inputs WHERE receipt = 3");
+  });
+  expect_found_and_mended("inputs_kept");
+  without_index("outputs_damaged", [this] { statement("UPDATE outputs SET checksum = 'damaged' WHERE ordinal = 2"); });
+  expect_found_and_mended("outputs_damaged");
 }
 
 TEST_F(Mend, NorToBeSentAgain) {
@@ -438,6 +449,69 @@ TEST_F(Mend, AFileThatIsNoDatabaseAnyMoreIsMadeAgain) {
     ASSERT_THAT(journal.quarantine().value(), SizeIs(1));
     EXPECT_THAT(journal.quarantine().value().at(0).reason, HasSubstr("damaged-"));
   }
+}
+
+/// A user who has a directory with a journal in which somebody set owners and modes.
+class Rights : public Mend {
+ protected:
+  static constexpr uid_t kNobody = 65534;
+
+  Rights() : file_((place_.directory() / "journal.db").string()) {
+    if (::geteuid() != 0) return;
+    EXPECT_EQ(::chown(place_.directory().c_str(), kNobody, kNobody), 0);
+    for (const auto& entry : std::filesystem::directory_iterator(place_.directory()))
+      EXPECT_EQ(::chown(entry.path().c_str(), kNobody, kNobody), 0);
+  }
+  /// What he finds in it, and what is told of it: root may read everything.
+  [[nodiscard]] std::string opened_by_the_user() const {
+    const std::string said = (place_.directory() / "said").string();
+    const pid_t child = ::fork();
+    if (child == 0) {
+      if (::geteuid() == 0 && (::setgid(kNobody) != 0 || ::setuid(kNobody) != 0)) ::_exit(1);
+      auto journal = Journal::open(place_.connection(), kService);
+      std::ofstream stream(said);
+      if (!journal) stream << journal.error().describe();
+      if (journal) stream << outputs(*journal).size() << " outputs";
+      if (journal)
+        for (const SetAside& one : journal->quarantine().value()) stream << "; " << one.reason;
+      stream.close();
+      ::_exit(0);
+    }
+    int status = 1;
+    EXPECT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0);
+    std::ifstream stream(said);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  void make_it_roots(::mode_t mode) const {
+    EXPECT_EQ(::chown(file_.c_str(), 0, 0), 0);
+    EXPECT_EQ(::chmod(file_.c_str(), mode), 0);
+  }
+  std::string file_;
+};
+
+TEST_F(Rights, AFileOfNoRightsGetsItsUsersBack) {
+  ASSERT_EQ(::chmod(file_.c_str(), 0), 0);
+  EXPECT_THAT(opened_by_the_user(), AllOf(HasSubstr("2 outputs"), HasSubstr("have their rights back")));
+  EXPECT_FALSE(std::filesystem::exists(file_ + ".damaged-1"));
+  EXPECT_THAT(opened_by_the_user(), HasSubstr("2 outputs")) << "and stays so";
+}
+
+TEST_F(Rights, AnothersFileIsCopied) {
+  if (::geteuid() != 0) GTEST_SKIP() << "it takes root to give a file to another user";
+  make_it_roots(0644);
+  EXPECT_THAT(opened_by_the_user(), AllOf(HasSubstr("2 outputs"), HasSubstr("a copy is in their place")));
+  EXPECT_TRUE(std::filesystem::exists(file_ + ".damaged-1"));
+}
+
+TEST_F(Rights, AnothersFileThatMayNotBeReadIsKeptAsideAndMadeAgain) {
+  if (::geteuid() != 0) GTEST_SKIP() << "it takes root to give a file to another user";
+  make_it_roots(0600);
+  EXPECT_THAT(opened_by_the_user(),
+              AllOf(HasSubstr("0 outputs"), HasSubstr("may not be read by this user"), Not(HasSubstr("was removed"))));
+  EXPECT_TRUE(std::filesystem::exists(file_ + ".damaged-1"));
+  EXPECT_THAT(opened_by_the_user(), HasSubstr("0 outputs"));
+  EXPECT_FALSE(std::filesystem::exists(file_ + ".damaged-2"));
 }
 
 /// The file as it is closed, without its log; each time from the beginning.

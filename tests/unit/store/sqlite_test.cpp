@@ -18,6 +18,9 @@ namespace {
 
 using ::testing::HasSubstr;
 
+/// Whose files nobody may replace either.
+constexpr auto kReadOnlyDirectory = std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec;
+
 Message big_message(int number) {
   TestWindow window;
   window.header.message_id = "test_window/" + std::to_string(number);
@@ -78,6 +81,7 @@ TEST(JournalFile, ThatThisUserMayNotWriteToIsNoDamage) {
   const std::filesystem::path file = place.directory() / "journal.db";
   std::ofstream(file) << std::string(5000, 'x');
   std::filesystem::permissions(file, std::filesystem::perms::owner_read);
+  std::filesystem::permissions(place.directory(), kReadOnlyDirectory);
   EXPECT_FALSE(Journal::open(place.connection(), "state_detection").has_value());
   EXPECT_FALSE(std::filesystem::exists(file.string() + ".damaged-1"));
 }
@@ -188,6 +192,7 @@ TEST(JournalFile, ThatMayNotBeWrittenIsRefused) {
     return;
   }
   std::filesystem::permissions(place.directory() / "journal.db", std::filesystem::perms::owner_read);
+  std::filesystem::permissions(place.directory(), kReadOnlyDirectory);
   auto journal = Journal::open(place.connection(), "state_detection");
   const Status written = journal ? journal->begin() : fail(journal.error());
   const auto added = written ? journal->add_output(big_message(1), UtcTime{}) : fail(written.error());

@@ -17,6 +17,7 @@
 #include "services/common/mismatch/naming.hpp"
 #include "services/common/mismatch/own_values.hpp"
 #include "services/common/mismatch/proven_laws.hpp"
+#include "services/common/mismatch/remainder.hpp"
 #include "services/common/mismatch/time_budget.hpp"
 #include "services/common/mismatch/trace.hpp"
 #include "services/common/mismatch/why_none.hpp"
@@ -145,6 +146,9 @@ class Analysis {
   // What is left beside a law says that something is left, not what, where it could as well sit in three other elements
   // or is no more than the law's own form may be off by; nor is a law claimed whose strength may be nothing.
   void describe_what_was_found();
+  /// In a gross misfit: forms at other elements are told by the linear model, which says little there.
+  void take_out_forms_of_larger_laws();
+  void take_out(const Remainder& remainder);
   [[nodiscard]] bool more_than_form(const LawAt& small, const LawAt& large);
   void take_out(std::size_t slot);
   // Everything that the report holds; once more with fewer laws where some are taken back.

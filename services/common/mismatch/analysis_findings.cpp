@@ -45,6 +45,7 @@ void Analysis::describe_what_was_found() {
   const bool gross = excess(*best_.model) > kGross;
   const std::optional<CarryOver> carry_over =
       gross && !best_.effects.empty() ? std::optional(carry_over_of(to_prove(), held_out())) : std::nullopt;
+  if (gross) take_out_forms_of_larger_laws();
   while (!gross && !best_.effects.empty()) {
     const std::optional<NotTold> law = not_told_from_zero(best_, resolution_of(prepared(fit_), plant()));
     if (!law) break;
@@ -59,12 +60,25 @@ void Analysis::describe_what_was_found() {
         remainder_among(result_.effects, law_at(best_.effects.back()),
                         [&](const LawAt& small, const LawAt& large) { return more_than_form(small, large); });
     if (!remainder) break;
-    result_.notes.push_back(remainder->sentence);
-    const auto slot = std::ranges::find_if(
-        best_.effects, [&](const Effect& effect) { return same_place(law_at(effect), remainder->law); });
-    take_out(static_cast<std::size_t>(slot - best_.effects.begin()));
+    take_out(*remainder);
   }
   if (best_.effects.empty()) result_.effects.clear();
+}
+
+void Analysis::take_out_forms_of_larger_laws() {
+  const auto elsewhere = [](const LawAt& small, const LawAt& large) { return small.element != large.element; };
+  while (best_.effects.size() > 1) {
+    time_.allow_what_is_needed();
+    std::vector<FoundEffect> gains(best_.effects.size());
+    for (std::size_t slot = 0; slot < gains.size(); ++slot) {
+      gains[slot].what = law_at(best_.effects[slot]);
+      gains[slot].delta_bic = -criterion_behind(*without(best_, slot, to_prove()).model, *best_.model);
+    }
+    time_.allow(1.0);
+    const std::optional<Remainder> remainder = remainder_among(gains, gains.back().what, elsewhere);
+    if (!remainder) return;
+    take_out(*remainder);
+  }
 }
 
 bool Analysis::more_than_form(const LawAt& small, const LawAt& large) {
@@ -80,6 +94,13 @@ bool Analysis::more_than_form(const LawAt& small, const LawAt& large) {
       !mismatch::more_than_form(*fewer.model, best_.effects[slot_of(large)], {one}, prepared(fit_), options_).empty();
   time_.allow(1.0);
   return more;
+}
+
+void Analysis::take_out(const Remainder& remainder) {
+  result_.notes.push_back(remainder.sentence);
+  const auto slot = std::ranges::find_if(
+      best_.effects, [&](const Effect& effect) { return same_place(law_at(effect), remainder.law); });
+  take_out(static_cast<std::size_t>(slot - best_.effects.begin()));
 }
 
 void Analysis::take_out(std::size_t slot) {

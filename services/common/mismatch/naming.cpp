@@ -307,15 +307,9 @@ std::optional<Trial> with_given_values(const Trial& found, const Data& data) {
   return Trial{found.effects, std::make_shared<const FittedModel>(std::move(*model))};
 }
 
-// Without those that add only a law of a sensor or of the recorded input, which takes up some of whatever is missing, and
-// that takes less than half of what is left; all, where no other is worth another law.
-std::vector<Trial> causes_among(const std::vector<Trial>& trials, const Trial& from, double phi) {
-  std::vector<Trial> causes = trials;
-  std::erase_if(causes, [&](const Trial& trial) {
-    const bool measured =
-        trial.effects.size() == from.effects.size() + 1 && is_of_measurement(trial.effects.back().law->kind);
-    return measured && takes_up_little(*from.model, *trial.model);
-  });
+// Of these trials the causes; all, where none of them is worth another law.
+std::vector<Trial> causes_if_any(const std::vector<Trial>& trials, const Trial& from, double phi) {
+  std::vector<Trial> causes = causes_among(trials, from);
   const double worth = criterion(*from.model, phi) - kWorthAnother;
   const bool any = std::ranges::any_of(causes, [&](const Trial& one) { return criterion(*one.model, phi) < worth; });
   return any ? causes : trials;
@@ -498,7 +492,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
       if (naming.sensors_are_inexact) return naming;
     }
     const double phi = smallest_dispersion(trials, *naming.best.model);
-    trials = causes_among(trials, naming.best, phi);
+    trials = causes_if_any(trials, naming.best, phi);
     best = best_of(trials, phi);
     // Where much is missing the first law may bring little before the second is there: what is not needed in the end is
     // taken out again.

@@ -8,6 +8,7 @@
 #include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/plain_laws.hpp"
 #include "services/common/mismatch/ranking.hpp"
+#include "services/common/mismatch/remainder.hpp"
 #include "services/common/mismatch/telling.hpp"
 
 namespace sealwatch::mismatch {
@@ -185,6 +186,15 @@ bool take(Naming& naming, const Trial& trial, const Data& data, const ExplainOpt
   return true;
 }
 
+std::vector<Trial> causes_among(std::vector<Trial> trials, const Trial& from) {
+  std::erase_if(trials, [&](const Trial& trial) {
+    const bool measured =
+        trial.effects.size() == from.effects.size() + 1 && is_of_measurement(trial.effects.back().law->kind);
+    return measured && takes_up_little(*from.model, *trial.model);
+  });
+  return trials;
+}
+
 double smallest_dispersion(const std::vector<Trial>& trials, const FittedModel& model) {
   double phi = dispersion(model);
   for (const Trial& trial : trials) phi = std::min(phi, dispersion(*trial.model));
@@ -230,8 +240,8 @@ void another_law_for_each(Naming& naming, const Data& data, const ExplainOptions
     for (LawStart& start : ranked_laws(causes_in(*left, *fewer->model), kOtherLaws + kSingleLaws))
       if (start.effect.element != naming.best.effects[slot].element && starts.size() < kOtherLaws)
         starts.push_back({std::move(start)});
-    for (Trial& trial : refit(*fewer, starts, data, options.threads, {.to_beat = naming.best.model->misfit}))
-      trials.push_back(std::move(trial));
+    std::vector<Trial> others = refit(*fewer, starts, data, options.threads, {.to_beat = naming.best.model->misfit});
+    for (Trial& trial : causes_among(std::move(others), *fewer)) trials.push_back(std::move(trial));
   }
   naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
   const double phi = smallest_dispersion(trials, *naming.best.model);

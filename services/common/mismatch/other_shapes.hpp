@@ -38,6 +38,10 @@ void one_law_for_several(Naming& naming, const Data& data, const ExplainOptions&
 /// the best all the same, and `not_asked` says so.
 [[nodiscard]] bool take(Naming& naming, const Trial& trial, const Data& data, const ExplainOptions& options);
 
+/// Without those that add only a law of a sensor or of the recorded input to `from`, which takes up some of whatever is
+/// missing, and that takes less than half of what is left.
+[[nodiscard]] std::vector<Trial> causes_among(std::vector<Trial> trials, const Trial& from);
+
 /// phi of the best of all these models.
 [[nodiscard]] double smallest_dispersion(const std::vector<Trial>& trials, const FittedModel& model);
 

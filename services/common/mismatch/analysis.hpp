@@ -146,7 +146,8 @@ class Analysis {
   // What is left beside a law says that something is left, not what, where it could as well sit in three other elements
   // or is no more than the law's own form may be off by; nor is a law claimed whose strength may be nothing.
   void describe_what_was_found();
-  /// In a gross misfit: forms at other elements are told by the linear model, which says little there.
+  /// In a gross misfit: by what laws take on held-out recordings. Forms at other elements are told by the linear model,
+  /// which says little there.
   void take_out_forms_of_larger_laws();
   void take_out(const Remainder& remainder);
   [[nodiscard]] bool more_than_form(const LawAt& small, const LawAt& large);

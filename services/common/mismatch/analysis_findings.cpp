@@ -69,13 +69,15 @@ void Analysis::take_out_forms_of_larger_laws() {
   const auto elsewhere = [](const LawAt& small, const LawAt& large) { return small.element != large.element; };
   while (best_.effects.size() > 1) {
     time_.allow_what_is_needed();
-    std::vector<FoundEffect> gains(best_.effects.size());
-    for (std::size_t slot = 0; slot < gains.size(); ++slot) {
-      gains[slot].what = law_at(best_.effects[slot]);
-      gains[slot].delta_bic = -criterion_behind(*without(best_, slot, to_prove()).model, *best_.model);
+    std::vector<FoundEffect> helps(best_.effects.size());
+    for (std::size_t slot = 0; slot < helps.size(); ++slot) {
+      helps[slot].what = law_at(best_.effects[slot]);
+      const auto blocks = held_out().gains(without(best_, slot, to_prove()), best_);
+      if (!blocks || blocks->gain.empty()) return;  // nothing is known of that law alone
+      helps[slot].delta_bic = -gain_interval(*blocks, dispersion(*best_.model), options_.seed).gain;
     }
     time_.allow(1.0);
-    const std::optional<Remainder> remainder = remainder_among(gains, gains.back().what, elsewhere);
+    const std::optional<Remainder> remainder = remainder_among(helps, helps.back().what, elsewhere);
     if (!remainder) return;
     take_out(*remainder);
   }

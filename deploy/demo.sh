@@ -27,7 +27,7 @@ if [ -n "$data" ] && [ -z "$(recordings_in "$data" 2>/dev/null)" ]; then
 fi
 
 deploy/install_packages.sh build
-echo "== build: takes six to ten minutes on two free cores the first time"
+echo "== build: takes five to ten minutes on two free cores the first time"
 deploy/build.sh release --target monitoring -DSEALWATCH_TESTS=OFF
 sealwatch=build/release/bin/sealwatch
 

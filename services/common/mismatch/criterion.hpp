@@ -2,11 +2,11 @@
 //
 //   criterion = misfit / phi + k max(ln(N / phi), 2) + 2 h + 2.2 r,   phi = max(1, misfit of the best model / N)
 //
-// k: free shared parameters; h: initial values of laws' hidden states; r: laws of the recording (input, clock), which are taken for a third as likely; N:
-// whitened residuals; phi: how much the best model still misses, so that differences are not taken for more than
-// they are. A model that misses grossly (misfit / N above 2) leaves not noise but a course, neighbouring samples of
-// which say the same: its phi is multiplied by the residuals' correlation time in samples, tau = 1 + 2 sum rho_k up
-// to the first rho_k <= 0. docs/mismatch.md gives the thresholds with their reasons.
+// k: free shared parameters; h: initial values of laws' hidden states; r: laws of the recording (input, clock), which are
+// taken for a third as likely; N: whitened residuals; phi: how much the best model still misses, so that differences are
+// not taken for more than they are. A model that misses grossly (misfit / N above 2) leaves not noise but a course,
+// neighbouring samples of which say the same: its phi is multiplied by the residuals' correlation time in samples,
+// tau = 1 + 2 sum rho_k up to the first rho_k <= 0. docs/mismatch.md gives the thresholds with their reasons.
 #pragma once
 
 #include "services/common/mismatch/fitted_model.hpp"

@@ -19,6 +19,35 @@ AssetConfig far_from_the_truth() {
   return asset;
 }
 
+// A real part rests as its last motion left it: where its bristles are when a recording starts is that recording's own.
+TEST(FittedModel, BristlesStartAnywhere) {
+  constexpr double kBent = -0.8;
+  const std::string name = "initial:" + physics_parameter_name("piston", "presliding_friction", "bristle");
+  const AssetConfig asset = with_law(nominal_asset("eha"), **find_law("presliding_friction", {"F_c", "delta"}),
+                                     "piston", std::vector{2000.0, 5e-5});
+  TimeSeries samples = standard_pst(asset, 50.0);
+  const auto simulation = PlantSimulation::create(asset, samples).value();
+  ModelValues start = simulation->start();
+  simulation->find(name)->in(start) = kBent;
+  const SimulatedOutputs outputs = simulation->run(start, {}).value();
+  for (std::size_t c = 0; c < simulation->channels().size(); ++c)
+    for (Series& series : samples.channels)
+      for (std::size_t row = 0; series.name == simulation->channels()[c] && row < series.values.size(); ++row)
+        series.values[row] = outputs.values(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(c));
+  Data data;
+  data.names = {"pst"};
+  data.samples = {std::move(samples)};
+  const auto fitted = fit_model(asset, data, nullptr, 1);
+  ASSERT_TRUE(fitted) << fitted.error().describe();
+  const std::vector<Unknown>& own = fitted->problem.recordings.front().own;
+  const auto bristle = std::ranges::find(own, name, &Unknown::name);
+  ASSERT_NE(bristle, own.end());
+  EXPECT_NEAR(bristle->to_value(fitted->optimum.point.own.front()[static_cast<std::size_t>(bristle - own.begin())]),
+              kBent, 0.1);
+  EXPECT_EQ(bristle->min, -1.0);
+  EXPECT_EQ(bristle->max, 1.0);
+}
+
 TEST(FittedModel, ASearchGoesOnFromWhereItEnded) {
   Data data;
   data.names = {"pst"};

@@ -4,9 +4,9 @@ namespace sealwatch::laws {
 
 // F = -F_b (1 - s^4), s = 1 - 2 g, dg/dt = -(v - |v| s^5) / b
 //
-// g is where the stem is in the clearance: 0 on the flank that it drives the load with in +x, where a recording starts,
-// 1 on the other. Motion carries it to the flank of its direction within a way of about b; between the flanks the load
-// is lost. The fifth power keeps the flanks sharp, the fourth the loss flat between them.
+// g is where the stem is in the clearance: 0 on the flank that it drives the load with in +x, 1 on the other. Motion
+// carries it to the flank of its direction within a way of about b; between the flanks the load is lost. The fifth power
+// keeps the flanks sharp, the fourth the loss flat between them.
 static LawOutput evaluate_backlash(const LawInput& in) {
   const auto& v = in.signal[0];
   const auto& F_b = in.parameter[0];

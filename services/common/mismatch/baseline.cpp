@@ -72,7 +72,8 @@ class BaselineFit {
     if (inputs.empty()) return {};
     fit_.resolution = holdout_.resolution = kMeasuredInputResolution;
     static_cast<void>(find_noise(fit_, inputs));
-    return fit_.colour.front();
+    fit_.of_inputs = holdout_.of_inputs = fit_.colour.front();
+    return fit_.of_inputs;
   }
 
   // Far off, the model's error decides, and some of the windows show it as well as all.

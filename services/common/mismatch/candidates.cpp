@@ -128,10 +128,15 @@ void add_of_recording(const Law& law, const PlantSimulation& simulation, const s
 }  // namespace
 
 std::vector<Candidate> find_candidates(const PlantSimulation& simulation, const std::vector<PhysicsTerm>& present,
-                                       bool closed_forms) {
+                                       Laws which) {
   std::vector<Candidate> candidates;
+  if (which == Laws::all) {
+    candidates = find_candidates(simulation, present, Laws::listed);
+    std::ranges::move(find_candidates(simulation, present, Laws::closed_forms), std::back_inserter(candidates));
+    return candidates;
+  }
   for (const Law& law : all_laws()) {
-    if (law.closed_form != closed_forms || !is_of_plant(law, simulation.plant().name)) continue;
+    if (law.closed_form != (which == Laws::closed_forms) || !is_of_plant(law, simulation.plant().name)) continue;
     if (is_of_recording(law.kind) || (is_sensor(law.kind) && law.kind < SiteKind::sensor_drift))
       add_of_recording(law, simulation, present, candidates);
     if (is_of_recording(law.kind)) continue;

@@ -1,6 +1,7 @@
 // What may be missing: every law of the catalogue at every place of this plant where it could act.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -19,10 +20,12 @@ struct Candidate {
   double strength_scale = 1.0;  ///< usual sizes are multiplied by it (a sensor's bias goes by its channel's range)
 };
 
+/// Laws with an equation of their own, closed forms (most of them without a name: id `unlisted`), or both.
+enum class Laws : std::uint8_t { listed, closed_forms, all };
+
 /// All candidates for a simulation's plant and recorded channels; those in `present` (element and id) are left out.
-/// Either the laws with an equation of their own, or the closed forms (most of them without a name: id `unlisted`).
 [[nodiscard]] std::vector<Candidate> find_candidates(const PlantSimulation& simulation,
-                                                     const std::vector<PhysicsTerm>& present, bool closed_forms);
+                                                     const std::vector<PhysicsTerm>& present, Laws which);
 
 /// The same law, or one of them comes to the other at the end of its range (Law::limit).
 [[nodiscard]] bool overlap(const Law& a, const Law& b);

@@ -44,8 +44,8 @@ std::vector<std::vector<LawStart>> twins_of(const Trial& best, std::size_t slot,
     if (found.size() == effect.law->parameters.size()) break;  // that form of the law
   }
   if (found.size() != effect.law->parameters.size()) return {};
-  std::vector<Candidate> twins =
-      find_candidates(*fewer.problem.recordings.front().simulation, fewer.asset.physics, effect.law->closed_form);
+  std::vector<Candidate> twins = find_candidates(*fewer.problem.recordings.front().simulation, fewer.asset.physics,
+                                                 effect.law->closed_form ? Laws::closed_forms : Laws::listed);
   std::erase_if(twins, [&](const Candidate& candidate) {
     return candidate.law != effect.law || candidate.element == effect.element;
   });

@@ -24,6 +24,7 @@ struct Data {
   /// Share of a significant strength (model/physics.hpp) that the simulation's own errors (input between samples,
   /// integration, rounding) can feign, or those of a measured input: a law must want more than that to count.
   double resolution = 0.01;
+  NoiseColour of_inputs = {};  ///< of the measured channels that drive the simulation, in its inputs' order
   /// Per recording, of each residual (sample * channels + channel): what the input's unrecorded course leaves of it.
   std::vector<Eigen::VectorXd> weight = {};
   std::vector<std::optional<UtcTime>> start_time = {};  ///< per recording; empty in windows

@@ -33,15 +33,14 @@ std::vector<LawStart> more_than_form(const FittedModel& without, const Effect& l
   std::erase_if(small, [&](const LawStart& law) { return law.effect.element == large.element; });
   if (small.empty()) return {};
   std::vector<Candidate> laws;
-  for (const bool closed_forms : {false, true})
-    for (Candidate& law : find_candidates(*without.problem.recordings.front().simulation, {}, closed_forms)) {
-      for (const LawStart& one : small) {
-        if (law.law != one.effect.law || law.element != one.effect.element) continue;
-        laws.push_back(law);
-        laws.back().grid = {one.parameters};
-      }
-      if (law.element == large.element) laws.push_back(std::move(law));
+  for (Candidate& law : find_candidates(*without.problem.recordings.front().simulation, {}, Laws::all)) {
+    for (const LawStart& one : small) {
+      if (law.law != one.effect.law || law.element != one.effect.element) continue;
+      laws.push_back(law);
+      laws.back().grid = {one.parameters};
     }
+    if (law.element == large.element) laws.push_back(std::move(law));
+  }
   const auto screening =
       screen_laws(without, std::move(laws), data, {.draws = 1, .seed = options.seed, .threads = options.threads});
   if (!screening) return {};

@@ -119,7 +119,8 @@ bool promising(const Screening& screening, const FittedModel& model) {
 // Closed forms that promise what another law must bring, as starts of refits from the trial.
 std::vector<std::vector<LawStart>> closed_forms_for(const Trial& from, const Data& data,
                                                     const ExplainOptions& options) {
-  const ScreeningOptions forms{.draws = 1, .seed = options.seed, .threads = options.threads, .closed_forms = true};
+  const ScreeningOptions forms{
+      .draws = 1, .seed = options.seed, .threads = options.threads, .laws = Laws::closed_forms};
   std::vector<std::vector<LawStart>> starts;
   const auto screening = screen(*from.model, data, forms);
   if (!screening || !promising(*screening, *from.model)) return starts;

@@ -94,10 +94,9 @@ std::vector<std::vector<LawStart>> most_promising(std::vector<std::vector<LawSta
   std::map<const Law*, double> promised;
   for (const std::vector<LawStart>& start : starts) promised[start.front().effect.law] = 0.0;
   std::vector<Candidate> laws;
-  for (const bool closed_forms : {false, true})
-    for (Candidate& law : find_candidates(*model.problem.recordings.front().simulation, {}, closed_forms))
-      if (promised.contains(law.law) && law.element == starts.front().front().effect.element)
-        laws.push_back(std::move(law));
+  for (Candidate& law : find_candidates(*model.problem.recordings.front().simulation, {}, Laws::all))
+    if (promised.contains(law.law) && law.element == starts.front().front().effect.element)
+      laws.push_back(std::move(law));
   const auto beside =
       screen_laws(model, std::move(laws), data, {.draws = 1, .seed = options.seed, .threads = options.threads});
   if (!beside) return starts;
@@ -207,8 +206,8 @@ void from_other_shapes(Naming& naming, const Trial& before, const Screening& ask
   // Where everything misses by far, another form of one law says nothing.
   std::vector<Candidate> forms;
   if (excess(*naming.best.model) < kFar)
-    forms =
-        find_candidates(*naming.baseline->problem.recordings.front().simulation, naming.baseline->asset.physics, true);
+    forms = find_candidates(*naming.baseline->problem.recordings.front().simulation, naming.baseline->asset.physics,
+                            Laws::closed_forms);
   std::vector<Trial> trials;
   const bool gross = excess(*before.model) > kGross;
   for (std::size_t added = before.effects.size(); added < naming.best.effects.size(); ++added) {

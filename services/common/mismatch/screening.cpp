@@ -11,6 +11,7 @@
 #include "services/common/mismatch/orders.hpp"
 #include "services/common/mismatch/screening_scores.hpp"
 #include "services/common/mismatch/sensitivity_pass.hpp"
+#include "services/common/mismatch/windows.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -48,8 +49,9 @@ std::vector<Variant> make_variants(const std::vector<PassColumn>& columns, const
 
 // One recording: products of its free columns Z, its residual r and its laws' columns L, where Z = Q R with about
 // orthonormal Q. All that is asked of what is left of r and L, once combinations of Z are taken off them, comes from
-// these products: no column is kept. Z itself would not do, since its columns may nearly depend on each other, and large
-// multiples of them would leave rounding. Columns of L are those of all recordings (Layout); other recordings' are zero.
+// these products: no column is kept. Z itself would not do, since its columns may nearly depend on each other, and
+// large multiples of them would leave rounding. Columns of L are those of all recordings (Layout); other recordings'
+// are zero.
 struct Products {
   std::vector<std::size_t> not_finite;  ///< candidates without a finite value somewhere: nothing else is here then
   Eigen::Index free = 0;                ///< columns of Q
@@ -275,8 +277,10 @@ Eigen::MatrixXd stacked(const std::vector<Left>& parts, Eigen::MatrixXd Left::*w
   return all;
 }
 
+using Parts = std::vector<std::optional<Result<Products>>>;
+
 // Takes candidates without a finite value in some recording out of the screening; whether there were any.
-bool leave_out_not_finite(const std::vector<std::optional<Result<Products>>>& parts, Screening& screening) {
+bool leave_out_not_finite(const Parts& parts, Screening& screening) {
   std::vector<bool> finite(screening.candidates.size(), true);
   for (const auto& part : parts)
     for (const std::size_t candidate : (*part)->not_finite) finite[candidate] = false;
@@ -287,56 +291,104 @@ bool leave_out_not_finite(const std::vector<std::optional<Result<Products>>>& pa
   return screening.candidates.size() < finite.size();
 }
 
+// The columns that are asked for, and where those of all recordings stand.
+struct Asked {
+  std::vector<PassColumn> columns;
+  Layout layout;
+};
+
+Parts products_of_all(const FittedModel& model, const Screening& screening, const Asked& asked,
+                      const ScreeningOptions& options) {
+  const int threads = passes_at_once(model, asked.columns.size(), options.threads);
+  return in_parallel<Parts::value_type>(model.problem.recordings.size(), threads, [&](std::size_t k) {
+    return products_of(model, k, screening.candidates, asked.columns, asked.layout, screening.variants,
+                       options.block_s);
+  });
+}
+
+// All recordings together, all unknowns taken off.
+struct Projected {
+  Normal all;
+  Eigen::MatrixXd coefficients;  ///< of the shared unknowns, by which [r L] are taken off
+  Eigen::VectorXd raw_norm;
+  std::vector<Left> left;  ///< per recording, and of what is known beforehand
+};
+
+Projected project(const FittedModel& model, Parts& parts, const Asked& asked, const Screening& screening, int threads) {
+  const RowMatrix known = known_beforehand(model);
+  const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
+  const Eigen::Index size = asked.layout.size;
+  Projected projected{
+      .all = {.gram = dense::gram_of_rows(known.leftCols(shared)), .cross = Eigen::MatrixXd::Zero(shared, size + 1)},
+      .coefficients = Eigen::MatrixXd::Zero(shared, size + 1),
+      .raw_norm = Eigen::VectorXd::Zero(size),
+      .left = {}};
+  projected.all.cross.col(0) = known.leftCols(shared).transpose() * known.col(shared);
+  for (auto& part : parts) {
+    const Normal normal = without_own(**part);
+    projected.all.gram += normal.gram;
+    projected.all.cross += normal.cross;
+    projected.raw_norm += (*part)->all.diagonal().tail(size);
+  }
+  if (shared > 0) projected.coefficients = NormalMatrix(projected.all.gram).solve(projected.all.cross);
+  projected.left = in_parallel<Left>(parts.size(), threads, [&](std::size_t k) {
+    return left_of(**parts[k], projected.coefficients, screening.variants);
+  });
+  if (known.rows() > 0) projected.left.push_back(left_of_known(known, projected.coefficients, screening.variants));
+  return projected;
+}
+
+// What the noise of measured inputs makes of U_b: the mean of some drawings. Zero where the simulation has no such
+// input.
+Eigen::MatrixXd feigned_scores(const FittedModel& model, const Data& data, const ScreeningOptions& options,
+                               const Screening& screening, const Asked& asked) {
+  constexpr std::uint64_t kDrawings = 4;
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(screening.block_scores.rows(), screening.block_scores.cols());
+  if (data.of_inputs.empty()) return sum;
+  double count = 0.0;
+  for (std::uint64_t drawing = 0; drawing < kDrawings; ++drawing) {
+    const auto feigned = feigned_by_inputs(model, data, options.seed + drawing);
+    if (!feigned) continue;
+    Parts parts = products_of_all(*feigned, screening, asked, options);
+    const auto failed = [](const auto& part) { return !*part || !(*part)->not_finite.empty(); };
+    if (std::ranges::any_of(parts, failed)) continue;
+    sum += stacked(project(*feigned, parts, asked, screening, options.threads).left, &Left::sums);
+    count += 1.0;
+  }
+  return count > 0.0 ? sum / count : sum;
+}
+
 Result<Screening> screen_candidates(const FittedModel& model, const Data& data, const ScreeningOptions& options,
                                     Screening screening) {
-  const std::vector<PassColumn> columns = pass_columns(screening.candidates);
-  const std::size_t recordings = data.samples.size();
-  const Layout layout = lay_out(columns, recordings);
-  screening.variants = make_variants(columns, layout);
-  screening.unit.resize(static_cast<std::size_t>(layout.size));
-  for (std::size_t k = 0; k < columns.size(); ++k)
-    for (const Eigen::Index index : layout.of_pass[k])
-      screening.unit[static_cast<std::size_t>(index)] = columns[k].unit;
-  using Part = std::optional<Result<Products>>;
-  const int threads = passes_at_once(model, columns.size(), options.threads);
-  std::vector<Part> parts = in_parallel<Part>(recordings, threads, [&](std::size_t k) {
-    return products_of(model, k, screening.candidates, columns, layout, screening.variants, options.block_s);
-  });
-  for (const Part& part : parts)
+  Asked asked{.columns = pass_columns(screening.candidates), .layout = {}};
+  asked.layout = lay_out(asked.columns, data.samples.size());
+  screening.variants = make_variants(asked.columns, asked.layout);
+  screening.unit.resize(static_cast<std::size_t>(asked.layout.size));
+  for (std::size_t k = 0; k < asked.columns.size(); ++k)
+    for (const Eigen::Index index : asked.layout.of_pass[k])
+      screening.unit[static_cast<std::size_t>(index)] = asked.columns[k].unit;
+  Parts parts = products_of_all(model, screening, asked, options);
+  for (const auto& part : parts)
     if (!*part) return fail(part->error());
   if (leave_out_not_finite(parts, screening))
     return screen_candidates(
         model, data, options,
         {.candidates = std::move(screening.candidates), .not_asked = std::move(screening.not_asked)});
 
-  const RowMatrix known = known_beforehand(model);
-  const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
-  Normal all{.gram = dense::gram_of_rows(known.leftCols(shared)),
-             .cross = Eigen::MatrixXd::Zero(shared, layout.size + 1)};
-  all.cross.col(0) = known.leftCols(shared).transpose() * known.col(shared);
-  Eigen::VectorXd raw_norm = Eigen::VectorXd::Zero(layout.size);
-  for (Part& part : parts) {
-    const Normal normal = without_own(**part);
-    all.gram += normal.gram;
-    all.cross += normal.cross;
-    raw_norm += (*part)->all.diagonal().tail(layout.size);
-  }
-  const Eigen::MatrixXd coefficients =
-      shared > 0 ? NormalMatrix(all.gram).solve(all.cross) : Eigen::MatrixXd::Zero(0, layout.size + 1);
-  screening.shared_like_law = coefficients.rightCols(layout.size);
-  for (const Part& part : parts) screening.own_like_law.push_back(own_like_law(**part, coefficients));
-  std::vector<Left> left = in_parallel<Left>(recordings, options.threads, [&](std::size_t k) {
-    return left_of(**parts[k], coefficients, screening.variants);
-  });
-  if (known.rows() > 0) left.push_back(left_of_known(known, coefficients, screening.variants));
-  screening.gram = Eigen::MatrixXd::Zero(layout.size, layout.size);
-  for (const Left& part : left) screening.gram += part.gram;
+  const Projected projected = project(model, parts, asked, screening, options.threads);
+  const Eigen::Index size = asked.layout.size;
+  screening.shared_like_law = projected.coefficients.rightCols(size);
+  for (const auto& part : parts) screening.own_like_law.push_back(own_like_law(**part, projected.coefficients));
+  screening.gram = Eigen::MatrixXd::Zero(size, size);
+  for (const Left& part : projected.left) screening.gram += part.gram;
   screening.gram.triangularView<Eigen::StrictlyUpper>() = screening.gram.transpose();
-  screening.block_scores = stacked(left, &Left::sums);
-  leave_out_rounding(screening, raw_norm);
+  screening.block_scores = stacked(projected.left, &Left::sums);
+  screening.block_scores -= feigned_scores(model, data, options, screening, asked);
+  leave_out_rounding(screening, projected.raw_norm);
   screening.gradient = screening.block_scores.colwise().sum();
-  if (shared > 0) find_leakage_shifts(screening, model, all.gram, all.cross.rightCols(layout.size));
-  evaluate(screening, raw_norm, stacked(left, &Left::grams),
+  if (projected.all.gram.rows() > 0)
+    find_leakage_shifts(screening, model, projected.all.gram, projected.all.cross.rightCols(size));
+  evaluate(screening, projected.raw_norm, stacked(projected.left, &Left::grams),
            resolution_of(data, model.problem.recordings.front().simulation->plant()));
   calibrate(screening, options);
   return screening;
@@ -345,8 +397,8 @@ Result<Screening> screen_candidates(const FittedModel& model, const Data& data, 
 }  // namespace
 
 Result<Screening> screen(const FittedModel& model, const Data& data, const ScreeningOptions& options) {
-  Screening screening{.candidates = find_candidates(*model.problem.recordings.front().simulation, model.asset.physics,
-                                                    options.closed_forms)};
+  Screening screening{
+      .candidates = find_candidates(*model.problem.recordings.front().simulation, model.asset.physics, options.laws)};
   if (data.are_parts)
     std::erase_if(screening.candidates,
                   [](const Candidate& candidate) { return candidate.law->kind == SiteKind::sensor_drift; });

@@ -12,6 +12,10 @@
 //   absorbed share                    a = 1 - |s~|^2/|s|^2
 //   minimum detectable strength       sqrt(lambda / |s~|^2), lambda = 27 (80 % power at 1 % over the whole catalogue)
 //
+// Where measured inputs drive the simulation, their noise moves it, and residual and s_j with it: U_b then has a mean
+// of its own, E(S~_b' r_b). It is drawn, with as much noise again on the inputs (windows.hpp), and taken off U_b
+// (simulation and extrapolation: J. R. Cook, L. A. Stefanski, J. American Statistical Association 89 (1994) 1314).
+//
 // p-value: the largest of all scores against its distribution when g is noise alone, N(0, G), which keeps the laws'
 // correlation; expressed as an effective number of independent laws.
 // Score test: C. R. Rao, Proc. Cambridge Philosophical Society 44 (1948) 50. Method in words: docs/mismatch.md.
@@ -49,8 +53,8 @@ struct Screening {
   Eigen::VectorXd gradient = {};      ///< g
   Eigen::MatrixXd block_scores = {};  ///< blocks x columns: U_b
   std::vector<double> unit = {};      ///< usual size of each column, in the law's unit
-  /// Changes of the fitted model's unknowns that together do what they can of a law at its usual size: shared x columns,
-  /// and own x columns per recording.
+  /// Changes of the fitted model's unknowns that together do what they can of a law at its usual size: shared x
+  /// columns, and own x columns per recording.
   Eigen::MatrixXd shared_like_law = {};
   std::vector<Eigen::MatrixXd> own_like_law = {};
   double p_value = 1.0;           ///< that there is nothing but noise
@@ -63,7 +67,7 @@ struct ScreeningOptions {
   int draws = 999;
   std::uint64_t seed = 1;
   int threads = 2;
-  bool closed_forms = false;  ///< closed forms instead of the other laws
+  Laws laws = Laws::listed;
 };
 
 /// An Error when the model cannot be simulated at its estimates.

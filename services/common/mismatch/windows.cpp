@@ -61,6 +61,7 @@ double window_of(const AssetConfig& asset, const TimeSeries& recorded) {
 Data cut_into_windows(const Data& data, double window_s) {
   Data windows;
   windows.resolution = data.resolution;
+  windows.of_inputs = data.of_inputs;
   windows.are_parts = true;
   windows.known = data.known;
   windows.given = data.given;
@@ -111,6 +112,36 @@ InputNoise input_noise(const FittedModel& model, const Data& windows, const Nois
   for (auto& [channel, of] : sums)
     for (std::size_t lag = 0; lag < of.first.size(); ++lag) noise[channel][lag] = of.first[lag] / of.second;
   return noise;
+}
+
+Result<FittedModel> feigned_by_inputs(const FittedModel& model, const Data& windows, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  FittedModel feigned{.asset = model.asset,
+                      .problem = {.shared = model.problem.shared,
+                                  .recordings = {},
+                                  .simulation_options = model.problem.simulation_options},
+                      .optimum = {}};
+  feigned.optimum.point = model.optimum.point;
+  for (std::size_t k = 0; k < windows.samples.size(); ++k) {
+    const PemRecording& part = model.problem.recordings[k];
+    TimeSeries samples = with_more_noise(model.asset, windows.samples[k], windows.of_inputs, random);
+    const RowMatrix& simulated = model.optimum.at_optimum[k].simulated;
+    for (std::size_t c = 0; c < part.simulation->channels().size(); ++c) {
+      const auto series = std::ranges::find(samples.channels, part.simulation->channels()[c], &Series::name);
+      for (std::size_t row = 0; row < series->values.size(); ++row)
+        series->values[row] = simulated(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(c));
+    }
+    auto noisy = PlantSimulation::create(model.asset, samples);
+    if (!noisy) return fail(noisy.error());
+    feigned.problem.recordings.push_back({.simulation = std::move(*noisy),
+                                          .noise_std = part.noise_std,
+                                          .time_s = part.time_s,
+                                          .group = part.group,
+                                          .colour = part.colour,
+                                          .weight = part.weight,
+                                          .own = part.own});
+  }
+  return feigned;
 }
 
 void add_input_noise(Data& data, const AssetConfig& asset, std::span<const std::string> channels,

@@ -104,7 +104,8 @@ class Controls {
     const bool listed =
         std::ranges::none_of(truths, [](const bench::TrialTruth& truth) { return truth.id == "unlisted"; });
     if (listed) return fit_oracle(screening);
-    const auto closed_forms = mismatch::screen(*baseline_, fit_, {.threads = threads_, .closed_forms = true});
+    const auto closed_forms =
+        mismatch::screen(*baseline_, fit_, {.threads = threads_, .laws = mismatch::Laws::closed_forms});
     if (closed_forms) fit_oracle(*closed_forms);
   }
 

@@ -50,7 +50,7 @@ struct Column {
 
 std::vector<Column> columns_of(const PlantSimulation& simulation) {
   std::vector<Column> all;
-  const auto candidates = find_candidates(simulation, {}, false);
+  const auto candidates = find_candidates(simulation, {}, Laws::listed);
   for (const PassColumn& column : pass_columns(candidates)) {
     const Candidate& candidate = candidates[column.candidate];
     if (candidate.sites.empty() || candidate.law->hidden) continue;

@@ -23,7 +23,7 @@ TEST(Orders, OfAShaftThatCogsComeFirst) {
   data.samples = {simulated_test(truth, 1.0)};
   const Result<FittedModel> model = fit_model(asset, data, nullptr, 2);
   ASSERT_TRUE(model);
-  std::vector<Candidate> candidates = find_candidates(*model->problem.recordings.front().simulation, {}, false);
+  std::vector<Candidate> candidates = find_candidates(*model->problem.recordings.front().simulation, {}, Laws::listed);
   const std::vector<Candidate> before = candidates;
   set_out_from_strongest_orders(candidates, *model, 2);
   ASSERT_EQ(candidates.size(), before.size());

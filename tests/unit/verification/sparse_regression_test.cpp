@@ -29,7 +29,7 @@ std::vector<SparseTerm> regressed(const Change& change) {
   const AssetConfig asset = bench::trial_asset();
   const auto simulation = PlantSimulation::create(asset, data.samples.front());
   EXPECT_TRUE(simulation);
-  return sparse_regression(asset, data, mismatch::find_candidates(**simulation, {}, false));
+  return sparse_regression(asset, data, mismatch::find_candidates(**simulation, {}, mismatch::Laws::listed));
 }
 
 void add_dry_friction(bench::TrialPlan& plan, double force_N) {

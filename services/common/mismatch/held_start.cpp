@@ -21,8 +21,8 @@ constexpr double kNoise = 1.1;       // times the noise's variance: its own size
 constexpr double kTimeShare = 0.25;  // of the time limit: a start, and no more
 constexpr int kIterations = 8;       // to see whether simulations come nearer where they are held, or follow free
 constexpr double kEnoughRows = 8000.0;
-// Within so many distances between samples: what adds up slowly shows; and, where that is still far off, noise is averaged
-// and little drifts.
+// Within so many distances between samples: what adds up slowly shows; and, where that is still far off, noise is
+// averaged and little drifts.
 constexpr double kLoosely = 100.0, kTightly = 10.0;
 
 double distance_s(const Data& data) {
@@ -38,17 +38,20 @@ bool acts_in_the_plant(const Law& law) { return !is_sensor(law.kind) && law.kind
 
 double misfit_of(const FittedModel& model) { return model.misfit / model.residuals; }
 
-// Nearly in proportion, the laws that promise most are those that bring most: few refits do.
-// What explains less than half of what is left is asked in free runs; what `runs_free` cannot follow (friction that falls
-// steeply with speed, and chatters) is no start.
+// Nearly in proportion, the laws that promise most are those that bring most, and pairs of them, too: few refits do.
+// What explains less than half of what is left is asked in free runs; what `runs_free` cannot follow (friction that
+// falls steeply with speed, and chatters) is no start.
 bool add_best(Trial& found, const Data& held, const ExplainOptions& options,
-              const std::function<bool(const Trial&)>& runs_free) {
+              const std::function<bool(const Trial&)>& runs_free, Laws laws) {
   constexpr std::size_t kRefits = 4;
-  const auto asked = screen(*found.model, held, {.draws = 1, .seed = options.seed, .threads = options.threads});
+  const auto asked =
+      screen(*found.model, held, {.draws = 1, .seed = options.seed, .threads = options.threads, .laws = laws});
   if (!asked) return false;
   std::vector<std::vector<LawStart>> starts;
   for (LawStart& start : ranked_laws(*asked, asked->candidates.size(), true))
     if (starts.size() < kRefits && acts_in_the_plant(*start.effect.law)) starts.push_back({std::move(start)});
+  if (static_cast<int>(found.effects.size()) + 2 <= options.maximum_laws)
+    std::ranges::move(ranked_pairs(*asked, found.model->misfit, false), std::back_inserter(starts));
   const std::vector<Trial> trials = refit(found, starts, held, options.threads, {.first_round_only = true});
   const auto best = std::ranges::find_if(trials, [&](const Trial& trial) {
     return share_explained(misfit_of(*found.model), misfit_of(*trial.model)) >= kExplainedAtLeast && runs_free(trial);
@@ -90,8 +93,8 @@ bool is_far_off(const FittedModel& model) {
   });
 }
 
-// Of recordings that are missed by far, some show what is missing as well as all: those that are missed most, until they
-// have rows enough. Windows are few enough already.
+// Of recordings that are missed by far, some show what is missing as well as all: those that are missed most, until
+// they have rows enough. Windows are few enough already.
 std::vector<std::size_t> missed_most(const FittedModel& model, const Data& data) {
   std::vector<std::size_t> places(data.samples.size());
   std::iota(places.begin(), places.end(), std::size_t{0});
@@ -143,40 +146,86 @@ std::optional<Held> hold(const FittedModel& baseline, const Data& data, const De
   return std::nullopt;
 }
 
+// The search with simulations held. Its deadline is that of one list of laws.
+class HeldSearch {
+ public:
+  HeldSearch(const FittedModel& baseline, const Data& data, const ExplainOptions& options)
+      : baseline_(baseline),
+        data_(data),
+        options_(options),
+        until_(options.cancel),
+        places_(missed_most(baseline, data)) {}
+
+  HeldStart run() {
+    allow_its_share();
+    const std::optional<Trial> nothing = held_without_laws();
+    if (!nothing) return {};
+    Trial found = laws_beside(*nothing, Laws::listed);
+    // Where listed laws leave much, a curve without a mechanism may show it all, and listed ones only parts of it.
+    if (excess(*found.model) > kGross) {
+      allow_its_share();
+      Trial forms = laws_beside(*nothing, Laws::all);
+      if (share_explained(misfit_of(*found.model), misfit_of(*forms.model)) >= kExplainedAtLeast)
+        found = std::move(forms);
+    }
+    return running_free(std::move(found));
+  }
+
+ private:
+  void allow_its_share() {
+    until_.set_in(std::min(kTimeShare * options_.time_limit_s,
+                           data_.deadline == nullptr ? options_.time_limit_s : data_.deadline->left_s()));
+  }
+
+  // As in a first round (refit): tolerances, which bend to what is missing, come with the free run.
+  std::optional<Trial> held_without_laws() {
+    AsKnown plain = as_known(baseline_.asset, data_);
+    const Data some = some_of(std::move(plain.data), places_);
+    const Result<FittedModel> there = fit_to_some(baseline_, plain.asset, some, places_, options_.threads, 0);
+    if (!there) return std::nullopt;
+    std::optional<Held> held = hold(*there, some, until_, options_.threads);
+    if (!held) return std::nullopt;
+    held_ = std::move(held->data);
+    return polished({{}, std::make_shared<const FittedModel>(std::move(held->model))}, held_, options_.threads);
+  }
+
+  Trial laws_beside(Trial trial, Laws laws) {
+    const auto runs_free = [&](const Trial& with) { return free_run_from(with, kIterations).has_value(); };
+    while (excess(*trial.model) > kNoise && static_cast<int>(trial.effects.size()) < options_.maximum_laws &&
+           add_best(trial, held_, options_, runs_free, laws)) {
+    }
+    was_cut_ = was_cut_ || until_.was_met();
+    return trial;
+  }
+
+  [[nodiscard]] Result<FittedModel> free_run_from(const Trial& trial, int iterations) const {
+    return fit_to_some(*trial.model, data_, among(places_, data_), options_.threads, iterations);
+  }
+
+  [[nodiscard]] HeldStart running_free(Trial found) const {
+    HeldStart start{.trial = {}, .was_cut = was_cut_};
+    if (found.effects.empty()) return start;
+    Result<FittedModel> free = free_run_from(found, kSearchIterations);
+    if (free && share_explained(misfit_of(baseline_), misfit_of(*free)) >= kExplainedAtLeast)
+      start.trial = Trial{.effects = std::move(found.effects),
+                          .model = std::make_shared<const FittedModel>(std::move(*free)),
+                          .is_start = true};
+    return start;
+  }
+
+  const FittedModel& baseline_;
+  const Data& data_;
+  const ExplainOptions& options_;
+  Deadline until_;
+  std::vector<std::size_t> places_;
+  Data held_;
+  bool was_cut_ = false;
+};
+
 }  // namespace
 
 HeldStart start_from_held(const FittedModel& baseline, const Data& data, const ExplainOptions& options) {
-  HeldStart start;
-  const double allowed_s = std::min(kTimeShare * options.time_limit_s,
-                                    data.deadline == nullptr ? options.time_limit_s : data.deadline->left_s());
-  Deadline until(options.cancel);
-  until.set_in(allowed_s);
-  const std::vector<std::size_t> places = missed_most(baseline, data);
-  // As in a first round (refit): tolerances, which bend to what is missing, come with the free run.
-  AsKnown plain = as_known(baseline.asset, data);
-  const Data some = some_of(std::move(plain.data), places);
-  const Result<FittedModel> there = fit_to_some(baseline, plain.asset, some, places, options.threads, 0);
-  if (!there) return start;
-  std::optional<Held> held = hold(*there, some, until, options.threads);
-  if (!held) return start;
-  Trial found =
-      polished({{}, std::make_shared<const FittedModel>(std::move(held->model))}, held->data, options.threads);
-  const auto free_run_from = [&](const Trial& trial, int iterations) {
-    return fit_to_some(*trial.model, data, among(places, data), options.threads, iterations);
-  };
-  const auto runs_free = [&](const Trial& trial) { return free_run_from(trial, kIterations).has_value(); };
-  while (excess(*found.model) > kNoise && static_cast<int>(found.effects.size()) < options.maximum_laws &&
-         add_best(found, held->data, options, runs_free)) {
-  }
-  start.was_cut = until.was_met();
-  if (found.effects.empty()) return start;
-  Result<FittedModel> free = free_run_from(found, kSearchIterations);
-  if (!free) return start;
-  if (share_explained(misfit_of(baseline), misfit_of(*free)) >= kExplainedAtLeast)
-    start.trial = Trial{.effects = std::move(found.effects),
-                        .model = std::make_shared<const FittedModel>(std::move(*free)),
-                        .is_start = true};
-  return start;
+  return HeldSearch(baseline, data, options).run();
 }
 
 }  // namespace sealwatch::mismatch

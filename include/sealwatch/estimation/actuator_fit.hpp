@@ -36,9 +36,10 @@ struct ActuatorFitOptions {
   /// Where the misfit is above the noise, standard errors grow with it: this times the whitened misfit's mean square.
   double cost_tolerance = 0.25;
   /// Integrator steps per sample that a simulation may take. The reference plant needs 0.2 to 2.5 at its nominal
-  /// values, the switched one 5; a trial that needs more is far from any optimum and would only cost time: it counts as
+  /// values, the switched one 5, one with states as fast as its samples 10 to 20; a trial that needs more is far from
+  /// any optimum and would only cost time: it counts as
   /// a failed step.
-  double steps_per_sample = 10.0;
+  double steps_per_sample = 20.0;
   /// A search whose whitened rms is still above this after some iterations is given up: the model is not that of the
   /// recording, and its parameters would mean nothing.
   double hopeless_rms = 20.0;

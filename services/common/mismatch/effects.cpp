@@ -87,17 +87,17 @@ std::vector<Trial> alternatives_of(const Naming& naming, const Trial& best, std:
   }
   if (!fewer) return found;
   std::vector<std::vector<LawStart>> starts;
-  // A search that began with this law has not asked for others in its place.
-  const bool asked = std::ranges::any_of(
-      found, [&](const Trial& trial) { return trial.effects.back().law->id != best.effects[slot].law->id; });
-  if (!others.empty() || !asked) {
-    const Result<Screening> screening =
-        others.empty() ? naming.first
-                       : screen(*fewer->model, data, {.draws = 1, .seed = options.seed, .threads = options.threads});
-    if (!screening) return found;
-    for (LawStart& start : ranked_laws(*screening, kAlternatives))
-      if (!same(start.effect, best.effects[slot])) starts.push_back({std::move(start)});
-  }
+  // A search that began with this law, or with others beside it, has not asked for all of them in its place.
+  const Result<Screening> screening =
+      others.empty() ? naming.first
+                     : screen(*fewer->model, data, {.draws = 1, .seed = options.seed, .threads = options.threads});
+  if (!screening) return found;
+  const auto is_known = [&](const Effect& law) {
+    return same(law, best.effects[slot]) ||
+           std::ranges::any_of(found, [&](const Trial& trial) { return same(trial.effects.back(), law); });
+  };
+  for (LawStart& start : ranked_laws(*screening, kAlternatives))
+    if (!is_known(start.effect)) starts.push_back({std::move(start)});
   const RefitOptions rivals{.again_smaller = true, .to_beat = best.model->misfit};
   for (Trial& trial : refit(*fewer, starts, data, options.threads, rivals)) found.push_back(std::move(trial));
   constexpr double kNear = 1.01;  // times the misfit: further off a twin is told apart without its last iterations

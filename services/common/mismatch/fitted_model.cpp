@@ -15,7 +15,6 @@ ActuatorFitOptions search_options(int threads, int iterations) {
   ActuatorFitOptions options;
   options.maximum_iterations = iterations;
   options.hopeless_rms = 1e9;  // a bad fit is what is looked at here
-  options.steps_per_sample = 20.0;
   options.restart_factors = {0.5, 2.0, 0.25};
   options.threads = threads;
   return options;

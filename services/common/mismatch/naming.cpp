@@ -316,6 +316,19 @@ std::vector<Trial> causes_if_any(const std::vector<Trial>& trials, const Trial& 
   return any ? causes : trials;
 }
 
+// These starts, and the laws that promise most where the plant's parameters are as given: one that parameters imitate (a
+// delay, viscous friction) promises little where they have bent to it.
+std::vector<std::vector<LawStart>> also_from(const Trial& given, std::vector<std::vector<LawStart>> starts,
+                                             const Data& data, const ExplainOptions& options) {
+  const auto asked = screen(*given.model, data, {.draws = 1, .seed = options.seed, .threads = options.threads});
+  if (!asked) return starts;
+  for (LawStart& start : ranked_laws(causes_in(*asked, *given.model), kSingles)) {
+    const auto is_it = [&](const std::vector<LawStart>& one) { return same(one.front().effect, start.effect); };
+    if (std::ranges::none_of(starts, is_it)) starts.push_back({std::move(start)});
+  }
+  return starts;
+}
+
 // Refits with another law: first the single laws that promise most, in a gross misfit all and from second starts too.
 // Where none of them does, sensors that are not exact; else the other laws, then pairs. Sensors that promise more than
 // the laws come first, and only laws that could do better are refitted. A parameter of which each recording has its own
@@ -365,7 +378,8 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
     return (gross && std::ranges::any_of(differing.trials(), ends_it)) || one_law_does(trials, naming, data, options);
   };
   if (gross && !one_does() && leave_most(with_differing(trials), *naming.best.model))
-    if (const auto given = with_given_values(naming.best, data)) refit_from(*given, singles);
+    if (const auto given = with_given_values(naming.best, data))
+      refit_from(*given, also_from(*given, singles, data, options));
   if (level == 0 && leave_most(with_differing(trials), *naming.best.model))
     refit_also(closed_forms_for(naming.best, data, options));
   differing.ask_beside(trials);

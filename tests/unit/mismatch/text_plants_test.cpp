@@ -181,6 +181,48 @@ TEST(TextPlants, ADriveAThousandTimesLargerHasLawsAsLarge) {
   EXPECT_EQ(back->physics[0].parameters.at("F_c").value, strength->second.value);
 }
 
+/// A positioner that answers a command 30 ms before the log says that it was given; semi-implicit Euler steps.
+Recording logged_late(const std::string& name, double period_s, double ripple_s, double volts, unsigned seed) {
+  constexpr double kStep_s = 1e-5, kSample_s = 0.01, kDuration_s = 12.0, kLate_s = 0.03;
+  constexpr double kMass_kg = 22.0, kDrag_N_s_m = 2000.0, kSpring_N_m = 1e4, kForce_N_V = 100.0;
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0.0, 1e-5);
+  const auto command = [&](double t) {
+    return volts * (1.0 - std::cos(2.0 * std::numbers::pi * t / period_s)) +
+           0.6 * std::sin(2.0 * std::numbers::pi * t / ripple_s);
+  };
+  Recording recording;
+  recording.recording_id = name;
+  Series u{"drive_voltage", "V", 0.0, {}}, x{"position", "m", 1e-5, {}};
+  double way = 0.0, speed = 0.0;
+  for (long step = 0, next = 0; static_cast<double>(step) * kStep_s < kDuration_s; ++step) {
+    const double t = static_cast<double>(step) * kStep_s;
+    if (t >= static_cast<double>(next) * kSample_s) {
+      recording.samples.time_s.push_back(t);
+      u.values.push_back(t < kLate_s ? 0.0 : command(t - kLate_s));
+      x.values.push_back(way + noise(random));
+      ++next;
+    }
+    speed += kStep_s * (kForce_N_V * command(t) - kDrag_N_s_m * speed - kSpring_N_m * way) / kMass_kg;
+    way += kStep_s * speed;
+  }
+  recording.samples.channels = {std::move(u), std::move(x)};
+  return recording;
+}
+
+/// Viscous friction imitates a delay until the mass is at its bound; there a delay promises nothing more.
+TEST(TextPlants, ADelayThatParametersHaveBentToIsFoundFromTheGivenOnes) {
+  const std::vector<Recording> fit = {logged_late("slow", 6.0, 1.7, 4.0, 1), logged_late("fast", 2.5, 0.9, 3.0, 2),
+                                      logged_late("short", 3.2, 0.7, 3.0, 3)};
+  const auto found =
+      mismatch::explain(asset_of_file("spring_return"), fit, std::vector{logged_late("between", 4.0, 1.3, 3.5, 4)});
+  ASSERT_TRUE(found) << found.error().describe();
+  ASSERT_EQ(found->verdict, MismatchVerdict::mismatch) << found->summary;
+  ASSERT_EQ(found->effects.size(), 1U) << found->summary;
+  EXPECT_EQ(found->effects[0].what.id, "input_delay");
+  EXPECT_NEAR(found->effects[0].parameters.at(0).value, -0.030, 0.001);
+}
+
 /// A law of one's own that has no value in one direction is left out by its name; what else may be missing is asked.
 TEST(TextPlants, ALawWithoutAValueIsLeftOutByItsName) {
   std::string text = large_positioner();

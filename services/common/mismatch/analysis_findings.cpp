@@ -300,6 +300,7 @@ bool Analysis::explains() const {
                              .proven = proven_,
                              .leave_nothing = leaves_nothing(),
                              .share = explained_share(),
+                             .leave_what_is_within = !asks_within(plant()) && excess(*best_.model) > kGross,
                              .as_searched = naming_.best.effects.size() == best_.effects.size(),
                              .p_before = beside_ ? naming_.first.p_value : result_.p_value,
                              .p_after = naming_.last.p_value});

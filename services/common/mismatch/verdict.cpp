@@ -17,7 +17,7 @@ double share_explained(double before, double after) {
 }
 
 bool explains(const LawsFound& laws) {
-  if (!laws.any || !laws.proven) return false;
+  if (!laws.any || !laws.proven || laws.leave_what_is_within) return false;
   const bool little_evidence_left =
       laws.as_searched && evidence(laws.p_after) <= kEvidenceLeft * evidence(laws.p_before);
   return laws.leave_nothing || laws.share >= kExplainedAtLeast || little_evidence_left;

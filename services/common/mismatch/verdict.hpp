@@ -7,7 +7,8 @@
 //
 // Laws explain where they are proven and leave nothing, take at least half of the misfit's excess over the noise, or
 // leave at most a tenth of the evidence, -ln p: the noise's own estimate is not exact enough for the first two alone
-// where the effect is small.
+// where the effect is small. Of a plant whose inside cannot be asked they explain where no gross misfit stays: clocks,
+// sensors and inputs take up some of whatever is missing within.
 #pragma once
 
 #include "sealwatch/mismatch/explanation.hpp"
@@ -27,6 +28,7 @@ struct LawsFound {
   bool proven = false;         ///< on recordings that took no part
   bool leave_nothing = false;  ///< beyond the noise
   double share = 0.0;          ///< share_explained
+  bool leave_what_is_within = false;  ///< a gross misfit, where physics within the plant cannot be asked
   bool as_searched = false;    ///< all that the search ended with: `p_after` is then theirs
   double p_before = 1.0, p_after = 1.0;
 };

@@ -247,9 +247,8 @@ Recording saturating(double period_s, unsigned seed) {
 void expect_nothing_asked_within(const mismatch::Explanation& found, const std::string& why,
                                  const std::string& advice) {
   EXPECT_TRUE(found.statistically_significant) << found.summary;
-  if (found.effects.empty()) {
-    EXPECT_TRUE(found.location.empty()) << found.location.front().element;
-  }
+  EXPECT_TRUE(found.effects.empty()) << found.summary;
+  EXPECT_TRUE(found.location.empty()) << found.location.front().element;
   EXPECT_THAT(found.summary, testing::HasSubstr(why));
   EXPECT_THAT(found.notes, testing::Contains(testing::HasSubstr(why)));
   EXPECT_THAT(found.next_test, testing::HasSubstr(advice));

@@ -40,6 +40,10 @@ TEST(LawsExplain, ByHalfOfTheExcessOrNineTenthsOfTheEvidence) {
       << "that p-value is of other laws";
 }
 
+TEST(LawsExplain, NotWhereMuchIsLeftInAPlantThatHidesItsInside) {
+  EXPECT_FALSE(explains({.any = true, .proven = true, .share = 0.9, .leave_what_is_within = true}));
+}
+
 TEST(LawsExplain, EvidenceBeyondTheSmallestDoubleCountsAsMuch) {
   EXPECT_TRUE(explains({.any = true, .proven = true, .as_searched = true, .p_before = 0.0, .p_after = 1e-30}));
   EXPECT_FALSE(explains({.any = true, .proven = true, .as_searched = true, .p_before = 0.0, .p_after = 1e-31}));

@@ -25,11 +25,11 @@ inline constexpr double kSmallestP = 1e-300;      ///< that is told: the tail's 
 /// What is known of the laws that are claimed.
 struct LawsFound {
   bool any = false;
-  bool proven = false;         ///< on recordings that took no part
-  bool leave_nothing = false;  ///< beyond the noise
-  double share = 0.0;          ///< share_explained
+  bool proven = false;                ///< on recordings that took no part
+  bool leave_nothing = false;         ///< beyond the noise
+  double share = 0.0;                 ///< share_explained
   bool leave_what_is_within = false;  ///< a gross misfit, where physics within the plant cannot be asked
-  bool as_searched = false;    ///< all that the search ended with: `p_after` is then theirs
+  bool as_searched = false;           ///< all that the search ended with: `p_after` is then theirs
   double p_before = 1.0, p_after = 1.0;
 };
 

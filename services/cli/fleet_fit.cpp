@@ -81,7 +81,12 @@ std::string json_of(const FleetFit& fit, const FleetErrors& errors, const FleetC
                                  {"std_errors",
                                   {{"initial_rate", errors.initial_rate},
                                    {"steepening", errors.steepening},
-                                   {"irregularity_std", errors.irregularity_std}}}};
+                                   {"irregularity_std", errors.irregularity_std}}},
+                                 {"limits", nlohmann::ordered_json::array()}};
+  if (fit.irregularity_is_limit) {
+    json["std_errors"]["irregularity_std"] = nullptr;
+    json["limits"].push_back({{"name", "irregularity_std"}, {"at_most", fit.population.irregularity_std}});
+  }
   FleetConstants::visit([&json](std::string_view name, double value) { json["constants"][std::string(name)] = value; },
                         constants);
   return json.dump(1) + "\n";
@@ -100,10 +105,18 @@ void print_text(const FleetFit& fit, const FleetErrors& errors, const FleetConst
   };
   row("initial_rate", fit.population.initial_rate, errors.initial_rate, reference.initial_rate);
   row("steepening, a month", fit.population.steepening, errors.steepening, reference.steepening);
-  row("irregularity_std", fit.population.irregularity_std, errors.irregularity_std, reference.irregularity_std);
+  if (fit.irregularity_is_limit)
+    std::printf("  %-22s %14s    %-12s %14s\n", "irregularity_std",
+                ("<= " + number(fit.population.irregularity_std, 4)).c_str(), "limit, 95 %",
+                number(reference.irregularity_std, 4).c_str());
+  else
+    row("irregularity_std", fit.population.irregularity_std, errors.irregularity_std, reference.irregularity_std);
   std::printf("  a mean seal from new to 0.6: %s months, by the reference %s\n",
               number(mean_remaining_months(fit.population.initial_condition, 0.6, fit.population), 3).c_str(),
               number(mean_remaining_months(reference.initial_condition, 0.6, reference), 3).c_str());
+  if (fit.irregularity_is_limit)
+    std::printf(
+        "  the histories are as regular as their errors let them be seen: irregularity_std is an upper limit\n");
   std::printf("\nFor the configuration; the spreads hold the errors of the means:\n%s", yaml_of(constants).c_str());
 }
 

@@ -316,6 +316,11 @@ TEST_F(OwnPlantCommands, AFleetsHistoriesGiveConstantsThatTheConfigurationTakes)
   EXPECT_EQ(result["lives"], 3);
   EXPECT_EQ(result["passed_over"], 1);
   EXPECT_GT(result["std_errors"]["initial_rate"].get<double>(), 0.0);
+  // Lives as regular as these tell no irregularity.
+  EXPECT_THAT(text.output, HasSubstr("limit, 95 %"));
+  EXPECT_TRUE(result["std_errors"]["irregularity_std"].is_null());
+  ASSERT_EQ(result["limits"].size(), 1U);
+  EXPECT_EQ(result["limits"][0]["name"], "irregularity_std");
   EXPECT_GT(result["constants"]["initial_rate"].get<double>(), 0.0);
 }
 

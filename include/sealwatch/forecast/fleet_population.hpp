@@ -15,6 +15,9 @@
 //
 //   cov(mean) = A^-1 W A^-1,   W = sum_i (D + V_i)^-1,   A = W + k D^-1: the reference pulls, and does not scatter
 //   D spread of the fleet; V_i covariance of life i's own (g(0), mu)
+//
+// Lives that are as regular as the least irregularity that is tried tell no irregularity, but an upper limit: where
+// -2 ln likelihood is 2.71 above its least.
 #pragma once
 
 #include <optional>
@@ -58,10 +61,12 @@ struct FleetLife {
 
 struct FleetFit {
   FleetPopulation population;
-  double initial_rate_error = 0.0;  ///< standard error of the mean [1]
-  double steepening_error = 0.0;    ///< standard error of the mean [1 per month]
-  int lives = 0;                    ///< that took part
-  int passed_over = 0;              ///< fewer than `kFewestTestsOfLife` tests
+  double initial_rate_error = 0.0;      ///< standard error of the mean [1]
+  double steepening_error = 0.0;        ///< standard error of the mean [1 per month]
+  double likeliest_irregularity = 0.0;  ///< at least a quarter of the reference's [1]
+  bool irregularity_is_limit = false;   ///< the population's is its upper limit at 95 %: the lives show none
+  int lives = 0;                        ///< that took part
+  int passed_over = 0;                  ///< fewer than `kFewestTestsOfLife` tests
 };
 inline constexpr int kFewestTestsOfLife = 12;
 

@@ -5,7 +5,7 @@
 //                         with fewer than three lives, irregularity / sqrt(n + lives that the reference counts as)
 //
 // A seal that is not yet known is one of the fleet about a mean that is not known better than that: in a forecast the
-// spread is sqrt(spread^2 + error^2).
+// spread is sqrt(spread^2 + error^2), and so is the irregularity. An upper limit stands for itself.
 #pragma once
 
 #include <span>
@@ -18,7 +18,7 @@ namespace sealwatch::forecast {
 struct FleetErrors {
   double initial_rate = 0.0;      ///< of the mean [1]
   double steepening = 0.0;        ///< of the mean [1 per month]
-  double irregularity_std = 0.0;  ///< [1]
+  double irregularity_std = 0.0;  ///< [1]; 0 of a limit
 };
 
 /// The standard errors of fit_population(fleet, reference, reference_lives), which must succeed.

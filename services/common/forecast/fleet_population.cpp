@@ -14,8 +14,10 @@ namespace {
 
 constexpr int kMaximisationSteps = 200;
 constexpr double kUnknownErrorStd = 0.003;  // of an estimate that comes without one
-// Multiples of the reference irregularity among which the likelihood chooses.
+// Multiples of the reference irregularity among which the likelihood chooses; upwards by this factor until it falls.
 constexpr std::array<double, 7> kIrregularityScales{0.25, 0.5, 0.71, 1.0, 1.41, 2.0, 4.0};
+constexpr double kNextScale = 2.0, kLargestScale = 1000.0;
+constexpr double kOneSided95 = 2.706;  // of -2 ln likelihood
 
 /// (g(0), mu) of one life, or a symmetric 2 x 2 matrix by (11, 12, 22).
 using Pair = std::array<double, 2>;
@@ -140,21 +142,59 @@ double lowest_between(const std::array<double, 3>& x, const std::array<double, 3
   return right > left ? 0.5 * (x[0] + x[1]) - left * 0.5 * (x[2] - x[0]) / (right - left) : x[1];
 }
 
+struct Irregularity {
+  double likeliest = 0.0, value = 0.0;
+  bool is_limit = false;
+};
+
+// -2 ln likelihood of the multiples of the reference irregularity, up to one beyond the best.
+struct Misfits {
+  std::vector<double> scales, values;
+  std::size_t best = 0;
+};
+
+Misfits misfits_of(const std::vector<FleetLife>& lives, const FleetPopulation& reference) {
+  Misfits misfits;
+  const auto add = [&](double scale) {
+    FleetPopulation trial = reference;
+    trial.irregularity_std *= scale;
+    double sum = 0.0;
+    for (const LifeEstimate& one : estimate_all(lives, trial)) sum += one.misfit();
+    misfits.scales.push_back(scale);
+    misfits.values.push_back(sum);
+    if (sum < misfits.values[misfits.best]) misfits.best = misfits.values.size() - 1;
+  };
+  for (const double scale : kIrregularityScales) add(scale);
+  while (misfits.best + 1 == misfits.scales.size() && misfits.scales.back() < kLargestScale)
+    add(kNextScale * misfits.scales.back());
+  return misfits;
+}
+
+/// The multiple above which the irregularity is not, at 95 %, where the least one that is tried is the likeliest.
+double limit_above(const Misfits& misfits) {
+  for (std::size_t k = 1; k < misfits.values.size(); ++k) {
+    const double before = misfits.values[k - 1] - misfits.values[0], after = misfits.values[k] - misfits.values[0];
+    if (after < kOneSided95) continue;
+    const double share = (kOneSided95 - before) / (after - before);
+    return misfits.scales[k - 1] * std::pow(misfits.scales[k] / misfits.scales[k - 1], share);
+  }
+  return misfits.scales.back();
+}
+
 // Between the multiples by the parabola through the best and its neighbours: a fleet that is a little other has an
 // irregularity that is a little other, which its standard error by leaving lives out is made of.
-double best_irregularity(const std::vector<FleetLife>& lives, const FleetPopulation& reference) {
-  std::array<double, kIrregularityScales.size()> logarithms{}, misfits{};
-  for (std::size_t k = 0; k < misfits.size(); ++k) {
-    FleetPopulation trial = reference;
-    trial.irregularity_std *= kIrregularityScales[k];
-    logarithms[k] = std::log(kIrregularityScales[k]);
-    for (const LifeEstimate& one : estimate_all(lives, trial)) misfits[k] += one.misfit();
-  }
-  const auto best = static_cast<std::size_t>(std::ranges::min_element(misfits) - misfits.begin());
-  if (best == 0 || best + 1 == misfits.size()) return reference.irregularity_std * kIrregularityScales[best];
-  return reference.irregularity_std *
-         std::exp(lowest_between({logarithms[best - 1], logarithms[best], logarithms[best + 1]},
-                                 {misfits[best - 1], misfits[best], misfits[best + 1]}));
+Result<Irregularity> irregularity_of(const std::vector<FleetLife>& lives, const FleetPopulation& reference) {
+  const Misfits misfits = misfits_of(lives, reference);
+  const std::vector<double>&x = misfits.scales, &y = misfits.values;
+  const std::size_t best = misfits.best;
+  const double unit = reference.irregularity_std;
+  if (best == 0) return Irregularity{.likeliest = unit * x[0], .value = unit * limit_above(misfits), .is_limit = true};
+  if (best + 1 == x.size())
+    return fail("the histories scatter more than " + text::general(unit * x[best]) + " from test to test",
+                "theta is 1 of a new part and falls; check the files");
+  const double found = unit * std::exp(lowest_between({std::log(x[best - 1]), std::log(x[best]), std::log(x[best + 1])},
+                                                      {y[best - 1], y[best], y[best + 1]}));
+  return Irregularity{.likeliest = found, .value = found, .is_limit = false};
 }
 
 }  // namespace
@@ -240,7 +280,11 @@ Result<FleetFit> fit_population(std::span<const FleetLife> fleet, const FleetPop
     return fail("no life of the fleet has at least " + std::to_string(kFewestTestsOfLife) +
                 " tests since installation");
   fit.population = reference;
-  fit.population.irregularity_std = best_irregularity(lives, reference);
+  const Result<Irregularity> irregularity = irregularity_of(lives, reference);
+  if (!irregularity) return fail(irregularity.error());
+  fit.population.irregularity_std = irregularity->value;
+  fit.likeliest_irregularity = irregularity->likeliest;
+  fit.irregularity_is_limit = irregularity->is_limit;
   const std::vector<LifeEstimate> estimates = estimate_all(lives, fit.population);
   const Moments start = moments_of(reference);
   Moments moments = start;

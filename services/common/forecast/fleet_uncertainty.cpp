@@ -26,14 +26,14 @@ FleetErrors fleet_errors(std::span<const FleetLife> fleet, const FleetFit& fit, 
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(out));
     const Result<FleetFit> without = fit_population(others, reference, reference_lives);
     if (!without || without->lives == fit.lives) continue;  // that life had taken no part
-    irregularities.push_back(without->population.irregularity_std);
+    irregularities.push_back(without->likeliest_irregularity);
   }
   FleetErrors errors{.initial_rate = fit.initial_rate_error,
                      .steepening = fit.steepening_error,
                      .irregularity_std = fit.population.irregularity_std / std::sqrt(fit.lives + reference_lives)};
-  // At the least or the most that is tried it stays there whatever life is left out.
   if (irregularities.size() >= static_cast<std::size_t>(kFewestForJackknife))
     if (const double scatter = jackknife(irregularities); scatter > 0.0) errors.irregularity_std = scatter;
+  if (fit.irregularity_is_limit) errors.irregularity_std = 0.0;
   return errors;
 }
 
@@ -43,7 +43,7 @@ FleetConstants constants_for_forecasts(const FleetPopulation& population, const 
           .steepening = population.steepening,
           .steepening_std = std::hypot(population.steepening_std, errors.steepening),
           .rate_steepening_correlation = population.rate_steepening_correlation,
-          .irregularity_std = population.irregularity_std};
+          .irregularity_std = std::hypot(population.irregularity_std, errors.irregularity_std)};
 }
 
 FleetPopulation population_of(const FleetConstants& constants, const FleetPopulation& reference) {

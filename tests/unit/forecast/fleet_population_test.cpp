@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <random>
+
 #include "sealwatch/forecast/configured.hpp"
 #include "sealwatch/forecast/fleet_uncertainty.hpp"
 #include "sealwatch/forecast/forecaster.hpp"
@@ -145,6 +147,52 @@ TEST(FleetUncertainty, LivesThatAreAlikeLeaveAnErrorOfTheirOwn) {
   constexpr double kOfTheSpread = 0.25, kByTheirOwnErrors = 0.05;
   EXPECT_NEAR(errors.initial_rate / fit->population.initial_rate_std, kOfTheSpread, kByTheirOwnErrors);
   EXPECT_NEAR(errors.steepening / fit->population.steepening_std, kOfTheSpread, kByTheirOwnErrors);
+}
+
+/// Lives that fall along the mean path, with the errors that are told of them.
+std::vector<FleetLife> regular_fleet(int lives, double irregular_std) {
+  std::vector<FleetLife> result;
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  const FleetPopulation mean;
+  constexpr double kError = 0.002;
+  for (int k = 0; k < lives; ++k) {
+    FleetLife life{.history = {}, .installed = test::kInstalled};
+    double theta = 1.0;
+    for (int n = 1; n <= 60; ++n) {
+      theta -= (mean.initial_rate + mean.steepening * n + irregular_std * normal(random)) * std::log((n + 1.0) / n);
+      life.history.push_back({test::month(n), theta + kError * normal(random), kError});
+    }
+    result.push_back(std::move(life));
+  }
+  return result;
+}
+
+// The reference's least irregularity is more than these lives have: no estimate, but a limit that still covers them.
+TEST(FleetUncertainty, RegularLivesTellALimitOfTheirIrregularity) {
+  const std::vector<FleetLife> regular = regular_fleet(3, 0.002);
+  const Result<FleetFit> fit = fit_population(regular);
+  ASSERT_TRUE(fit) << fit.error().describe();
+  EXPECT_TRUE(fit->irregularity_is_limit);
+  const double least = 0.25 * FleetPopulation{}.irregularity_std;
+  EXPECT_NEAR(fit->likeliest_irregularity, least, 1e-12);
+  EXPECT_GT(fit->population.irregularity_std, least);
+  EXPECT_LT(fit->population.irregularity_std, 4.0 * least);
+  const FleetErrors errors = fleet_errors(regular, *fit);
+  EXPECT_EQ(errors.irregularity_std, 0.0);
+  EXPECT_EQ(constants_for_forecasts(fit->population, errors).irregularity_std, fit->population.irregularity_std);
+}
+
+// Ten times as irregular as the reference: beyond the multiples that are tried first.
+TEST(FleetUncertainty, AnIrregularFleetIsEstimatedHoweverIrregularItIs) {
+  const std::vector<FleetLife> rough = regular_fleet(6, 0.375);
+  const Result<FleetFit> fit = fit_population(rough);
+  ASSERT_TRUE(fit) << fit.error().describe();
+  EXPECT_FALSE(fit->irregularity_is_limit);
+  constexpr double kOf360Months = 0.15;
+  EXPECT_NEAR(fit->population.irregularity_std / 0.375, 1.0, kOf360Months);
+  const FleetErrors errors = fleet_errors(rough, *fit);
+  EXPECT_GT(constants_for_forecasts(fit->population, errors).irregularity_std, fit->population.irregularity_std);
 }
 
 TEST(FleetUncertainty, ForecastersTakeTheConfiguredFleet) {

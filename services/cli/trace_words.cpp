@@ -45,6 +45,7 @@ Json channel_json(const ChannelComparison& channel) {
                {"input", channel.input},
                {"differs", channel.differs},
                {"stands_still", channel.stands_still},
+               {"sign_reversed", channel.sign_reversed},
                {"p_value", number_or_null(channel.p_value)},
                {"rms", number_or_null(channel.rms)},
                {"noise_std", number_or_null(channel.noise_std)},
@@ -99,6 +100,21 @@ std::string faults_text(const trace::TraceComparison& comparison) {
   return text;
 }
 
+/// What no other alteration is worth a look before: channels whose sign is the other one.
+std::string signs_text(const trace::TraceComparison& comparison) {
+  std::vector<std::string> reversed;
+  std::size_t driven = 0, reversed_driven = 0;
+  for (const ChannelComparison& channel : comparison.channels) {
+    driven += channel.input ? 0 : 1;
+    reversed_driven += channel.sign_reversed && !channel.input ? 1 : 0;
+    if (channel.sign_reversed) reversed.push_back(text::in_words(channel.name));
+  }
+  if (reversed.empty()) return "";
+  const bool all = driven > 1 && reversed_driven == driven;
+  return "The sign of " + text::joined(reversed) + " is reversed" +
+         (all ? ", as where the input's is: check both against the rig's wiring. " : ". ");
+}
+
 std::string listed(const std::vector<Alteration>& alterations) {
   std::string text;
   for (const Alteration& alteration : alterations)
@@ -115,11 +131,13 @@ std::string trace_summary(const trace::TraceComparison& comparison) {
   for (const ChannelComparison& channel : comparison.channels)
     if (channel.differs) channels.push_back(text::in_words(channel.name));
   const auto still = std::ranges::count(comparison.channels, true, &ChannelComparison::stands_still);
-  std::string text = "They differ beyond noise in " + text::joined(channels) + ". " + faults_text(comparison);
+  const std::string signs = signs_text(comparison);
+  std::string text = signs + "They differ beyond noise in " + text::joined(channels) + ". " + faults_text(comparison);
   if (!comparison.answer.empty())
     text += (still > 0 ? "This explains the rest: " : "This explains it: ") + listed(comparison.answer) + ".";
   else if (static_cast<std::size_t>(still) < channels.size())
-    text += "No gain, offset, delay, clock rate or sign of a channel or of the input explains it.";
+    text += signs.empty() ? "No gain, offset, delay, clock rate or sign of a channel or of the input explains it."
+                          : "No gain, offset, delay or clock rate of a channel or of the input explains the rest.";
   if (!comparison.equally.empty())
     text += " So does " + listed(comparison.equally) + "; a trace cannot tell them apart.";
   while (text.ends_with(' ')) text.pop_back();

@@ -61,7 +61,8 @@ struct ChannelComparison {
   double effective_samples = 0.0;  ///< of that noise
   double nrmse_percent = 0.0;      ///< 100: the same
   bool differs = false;
-  bool stands_still = false;  ///< the recorded channel, while the simulated one moves
+  bool stands_still = false;   ///< the recorded channel, while the simulated one moves
+  bool sign_reversed = false;  ///< turned round, the simulated course is far nearer to the recorded one
   double p_value = 1.0;
   std::vector<std::string> by;  ///< the groups of regressors that tell, most telling first
   std::vector<RegimeMisfit> regimes;

@@ -283,7 +283,7 @@ class Comparison {
     out.effective_samples = judged.test.effective_samples;
     out.nrmse_percent = nrmse_percent(out.recorded, out.simulated);
     out.p_value = std::min(1.0, judged.test.p_value * static_cast<double>(pairs_.size()));
-    out.differs = judged.test.p_value < limit();
+    out.differs = judged.test.p_value < limit() || is_likelier_turned_round(pair);
     std::vector<GroupTest> telling = judged.test.groups;
     std::ranges::sort(telling, {}, &GroupTest::p_value);
     for (const GroupTest& group : telling)
@@ -294,7 +294,18 @@ class Comparison {
     out.intervals = misfit_by_time(out_.time_s, difference);
     out.stands_still = out.differs && pair.stands_still;
     if (out.differs && !out.stands_still) ask_alterations(pair, out);
+    constexpr double kMost = 0.5;  // turned round, it misses by less than half of what it does
+    out.sign_reversed = std::ranges::any_of(out.alterations, [](const Alteration& alteration) {
+      return alteration.id.starts_with("sign") && alteration.removed_share > kMost;
+    });
     return out;
+  }
+
+  /// Twice a few waves is what noise of some colour may be, too, of which no regressor tells; with the other sign there is
+  /// none of it left.
+  [[nodiscard]] bool is_likelier_turned_round(const Pair& pair) const {
+    const std::optional<Draft> turned = draft("sign", pair.name, {&pair}, {.offset = true, .fixed_gain = -1.0});
+    return turned && turned->told.criterion < unaltered_criterion(times(), {&pair}) - kFarMoreLikely;
   }
 
   [[nodiscard]] CommonTimes times() const { return {out_.time_s, joints_}; }

@@ -33,6 +33,20 @@ TEST(TraceWords, SayWhereTheSimulationHadAnotherInput) {
   EXPECT_THAT(trace_summary(comparison), Not(HasSubstr("The input itself")));
 }
 
+TEST(TraceWords, BeginWithAChannelWhoseSignIsReversed) {
+  trace::TraceComparison comparison;
+  comparison.consistent = false;
+  comparison.channels = {channel_of("position", false, true), channel_of("pressure_a", false, true)};
+  comparison.channels.front().sign_reversed = true;
+  EXPECT_EQ(
+      trace_summary(comparison),
+      "The sign of position is reversed. They differ beyond noise in position, pressure A. No gain, offset, delay "
+      "or clock rate of a channel or of the input explains the rest.");
+  comparison.channels.back().sign_reversed = true;
+  EXPECT_THAT(trace_summary(comparison), ::testing::StartsWith("The sign of position, pressure A is reversed, as where "
+                                                               "the input's is: check both"));
+}
+
 TEST(TraceWords, NameADeadChannelAndAllThatExplainsTheRest) {
   trace::TraceComparison comparison;
   comparison.consistent = false;

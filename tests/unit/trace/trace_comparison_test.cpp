@@ -203,6 +203,31 @@ TEST(Trace, AnOffsetADelayASignAndAPair) {
   EXPECT_NEAR(best(delayed).parameters[0].value, 0.030, 4.0 * best(delayed).parameters[0].std_error);
 }
 
+// Of two waves twice their size is an autoregressive noise, and of a wave with a curved sensor no alteration is all.
+TEST(Trace, ASignThatIsReversedIsSeenWhateverElseThereIs) {
+  TimeSeries waves = stroke();
+  for (std::size_t k = 0; k < waves.time_s.size(); ++k) {
+    const double t = waves.time_s[k];
+    waves.channels[0].values[k] = 0.05 * std::sin(t) + 0.01 * std::sin(2.7 * t);
+  }
+  const auto recorded = [&](double curved) {
+    TimeSeries turned = waves;
+    for (double& value : turned.channels[0].values) value = -value - curved * value * value;
+    return noisy(turned, 1e-4, 0.0, 9);
+  };
+  for (const double curved : {0.0, 2.0}) {
+    const TraceComparison found = compare(recorded(curved), waves);
+    ASSERT_FALSE(found.consistent) << curved;
+    EXPECT_TRUE(found.channels[0].differs) << curved;
+    EXPECT_TRUE(found.channels[0].sign_reversed) << curved;
+    EXPECT_FALSE(found.channels[1].differs) << curved;
+    EXPECT_FALSE(found.channels[1].sign_reversed) << curved;
+  }
+  TimeSeries weaker = waves;
+  for (double& value : weaker.channels[0].values) value *= 0.5;
+  EXPECT_FALSE(compare(noisy(weaker, 1e-4, 0.0, 10), waves).channels[0].sign_reversed);
+}
+
 TEST(Trace, AClockIsOneCauseOfAllChannels) {
   TimeSeries fast = stroke();
   for (double& time : fast.time_s) time *= 1.01;

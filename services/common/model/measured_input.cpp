@@ -4,9 +4,10 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numeric>
 
 #include <Eigen/Dense>
+
+#include "sealwatch/signal/noise_floor.hpp"
 
 namespace sealwatch {
 namespace {
@@ -82,20 +83,6 @@ namespace {
 constexpr double kReach_s = 0.16;
 constexpr double kStandardErrors = 1.8;
 
-// Standard deviation of white noise: of third differences, without the tenth of them that is largest (corners).
-double noise_of(const std::vector<double>& values) {
-  constexpr double kKept = 0.9, kOfKept = 0.623;  // the variance of a normal deviate's smallest nine tenths
-  constexpr double kThird = 20.0;                 // 1 + 9 + 9 + 1
-  if (values.size() < 4) return 0.0;
-  std::vector<double> squares;
-  for (std::size_t k = 3; k < values.size(); ++k)
-    squares.push_back(std::pow(values[k] - 3.0 * values[k - 1] + 3.0 * values[k - 2] - values[k - 3], 2));
-  std::ranges::sort(squares);
-  squares.resize(std::max<std::size_t>(1, static_cast<std::size_t>(kKept * static_cast<double>(squares.size()))));
-  const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
-  return std::sqrt(sum / static_cast<double>(squares.size()) / (kOfKept * kThird));
-}
-
 struct Estimate {
   double value = 0.0, std_error = 0.0;
 };
@@ -124,7 +111,7 @@ std::vector<double> undo_sensor(const std::vector<double>& time_s, const std::ve
   if (count < 3) return values;
   const double step_s = (time_s.back() - time_s.front()) / static_cast<double>(count - 1);
   const auto longest = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(kReach_s / step_s)));
-  const double noise_std = noise_of(values);
+  const double noise_std = signal::estimate_noise_floor(values, time_s).standard_deviation;
   std::vector<double> inputs(count);
   for (std::size_t k = 0; k < count; ++k) {
     double least = -std::numeric_limits<double>::infinity(), most = -least;

@@ -28,7 +28,7 @@ struct SmoothedInput {
 /// has the same delay and the same area, and an integrator need not start anew at every sample.
 [[nodiscard]] std::vector<double> means_of_neighbours(const std::vector<double>& held);
 
-/// u at the samples; the noise is told from third differences.
+/// u at the samples; the noise is as signal/noise_floor.hpp estimates it.
 [[nodiscard]] std::vector<double> undo_sensor(const std::vector<double>& time_s, const std::vector<double>& values,
                                               double time_constant_s);
 

@@ -4,6 +4,7 @@
 
 #include "services/cli/terminal.hpp"
 #include "services/common/runtime/stream_window.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -59,7 +60,6 @@ void ReplayFeeder::feed(Bus& bus, std::chrono::steady_clock::time_point now) {
       for (RawSamples& block : next_test_()) unsent_.push_back(std::move(block));
       exhausted_ = unsent_.empty();
       if (exhausted_) return;
-      ++tests_sent_;
       test_started_ = now;
     }
     if (!due(now)) return;
@@ -142,7 +142,7 @@ std::string Quiescence::explain() const {
   std::string text;
   for (const auto& [service, status] : last_)
     if (status.pending_inputs != 0)
-      text += (text.empty() ? "" : ", ") + service + " has " + count_of(status.pending_inputs, "input") + " waiting";
+      text::add_to_list(text, service + " has " + count_of(status.pending_inputs, "input") + " waiting");
   return text.empty() ? "no service has inputs waiting" : text;
 }
 

@@ -39,7 +39,6 @@ class ReplayFeeder {
   [[nodiscard]] bool done() const { return exhausted_ && unsent_.empty() && waiting_.empty(); }
   [[nodiscard]] std::uint64_t last_sequence() const { return last_sequence_; }
   [[nodiscard]] const std::string& writer_id() const { return writer_id_; }
-  [[nodiscard]] std::size_t tests_sent() const { return tests_sent_; }
   /// Why the bus did not take the last block that it was given; "" when it did.
   [[nodiscard]] const std::string& not_taken() const { return not_taken_; }
   /// Why data acquisition refused tests of this replay, by its heartbeats; each reason once.
@@ -63,7 +62,6 @@ class ReplayFeeder {
   std::uint64_t last_sequence_ = 0;
   std::pair<std::uint64_t, std::uint64_t> progress_;  ///< first block that waits and last one sent, at the last change
   std::chrono::steady_clock::time_point progressed_;
-  std::size_t tests_sent_ = 0;
   bool exhausted_ = false;
   std::string not_taken_;
   std::string error_before_;  ///< the service's last error when the first block was sent

@@ -59,15 +59,4 @@ struct ScoreSummary {
                                                                const ForecastRequest& request, double lead_months,
                                                                int count);
 
-/// An earlier forecast of the end of life against the newest one: how the median moved, in the earlier one's terms.
-struct EndOfLifeScore {
-  double moved_months = 0.0;  ///< new median minus earlier median, positive: later
-  double probability = 0.0;   ///< of the new median in the earlier distribution
-  double crps_months = 0.0;   ///< of the earlier distribution at the new median
-  bool within_80 = false;
-  bool within_95 = false;
-};
-[[nodiscard]] EndOfLifeScore score_end_of_life(const PredictiveDistribution& earlier, double months_since,
-                                               double new_median_months);
-
 }  // namespace sealwatch::forecast

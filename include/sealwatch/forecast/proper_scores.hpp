@@ -49,9 +49,4 @@ struct ClusteredMean {
 /// An Error with fewer than two lives that have a value.
 [[nodiscard]] Result<ClusteredMean> clustered_mean(std::span<const Cluster> lives);
 
-/// Percentile bootstrap of the mean over all values: whole lives are drawn with replacement. The same seed gives the
-/// same interval everywhere.
-[[nodiscard]] Result<Interval> bootstrap_mean(std::span<const Cluster> lives, double level, std::uint64_t seed,
-                                              int draws = 1000);
-
 }  // namespace sealwatch::forecast

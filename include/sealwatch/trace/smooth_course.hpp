@@ -47,7 +47,4 @@ struct SmoothCourse {
 };
 [[nodiscard]] SmoothCourse smooth_course(const Eigen::VectorXd& values, double interval_s);
 
-/// Its slope alone: d/dt.
-[[nodiscard]] Eigen::VectorXd smooth_slope(const Eigen::VectorXd& values, double interval_s);
-
 }  // namespace sealwatch::trace

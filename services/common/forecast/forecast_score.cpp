@@ -88,14 +88,4 @@ std::vector<ConditionScore> score_past_forecasts(const Forecaster& forecaster, c
   return scores;
 }
 
-EndOfLifeScore score_end_of_life(const PredictiveDistribution& earlier, double months_since, double new_median_months) {
-  const double then = months_since + new_median_months;
-  EndOfLifeScore score{.moved_months = then - earlier.quantile(0.5),
-                       .probability = earlier.cdf(then),
-                       .crps_months = earlier.crps(then)};
-  score.within_80 = within(score.probability, 0.80);
-  score.within_95 = within(score.probability, 0.95);
-  return score;
-}
-
 }  // namespace sealwatch::forecast

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <boost/math/distributions/beta.hpp>
 #include <cmath>
-#include <random>
 
 #include "sealwatch/forecast/normal.hpp"
 
@@ -11,19 +10,6 @@ namespace sealwatch::forecast {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-
-struct Totals {
-  double sum = 0.0;
-  long count = 0;
-};
-
-/// Value at `share` of the sorted numbers, linear between neighbours.
-double sorted_quantile(const std::vector<double>& sorted, double share) {
-  const double place = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
 
 }  // namespace
 
@@ -77,26 +63,6 @@ Result<ClusteredMean> clustered_mean(std::span<const Cluster> lives) {
     if (life.count > 0) squares += std::pow(life.sum - result.mean * life.count, 2);
   result.standard_error = std::sqrt(squares * result.lives / (result.lives - 1.0)) / result.values;
   return result;
-}
-
-Result<Interval> bootstrap_mean(std::span<const Cluster> lives, double level, std::uint64_t seed, int draws) {
-  if (lives.empty()) return fail("a bootstrap needs at least one life");
-  if (!(level > 0.0 && level < 1.0) || draws < 2) return fail("a bootstrap needs a level within 0 and 1 and two draws");
-  std::mt19937_64 random(seed);
-  std::vector<double> means;
-  for (int draw = 0; draw < draws; ++draw) {
-    Totals totals;
-    for (std::size_t i = 0; i < lives.size(); ++i) {
-      const Cluster& life = lives[random() % lives.size()];  // bias of the remainder: lives / 2^64
-      totals.sum += life.sum;
-      totals.count += life.count;
-    }
-    if (totals.count > 0) means.push_back(totals.sum / static_cast<double>(totals.count));
-  }
-  if (means.empty()) return fail("no life has a value");
-  std::sort(means.begin(), means.end());
-  const double tail = 0.5 * (1.0 - level);
-  return Interval{sorted_quantile(means, tail), sorted_quantile(means, 1.0 - tail)};
 }
 
 }  // namespace sealwatch::forecast

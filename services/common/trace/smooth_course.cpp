@@ -190,6 +190,4 @@ VectorXd SmoothCourse::curvature(double interval_s) const {
   return out;
 }
 
-VectorXd smooth_slope(const VectorXd& values, double interval_s) { return smooth_course(values, interval_s).slope; }
-
 }  // namespace sealwatch::trace

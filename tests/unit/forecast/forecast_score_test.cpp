@@ -96,18 +96,6 @@ TEST(ForecastScore, ShortHistoriesHaveNothingToScore) {
   EXPECT_TRUE(score_past_forecasts(*forecaster, history_of(1, "reference", 20), 6.0, 4).empty());
 }
 
-TEST(ForecastScore, EndOfLifeInTheEarlierForecastsTerms) {
-  const auto earlier = PredictiveDistribution::make({{20.0, 0.0}, {40.0, 1.0}}).value();
-  const EndOfLifeScore same = score_end_of_life(earlier, 6.0, 24.0);
-  EXPECT_EQ(same.moved_months, 0.0);
-  EXPECT_TRUE(same.within_80);
-  const EndOfLifeScore later = score_end_of_life(earlier, 6.0, 33.8);
-  EXPECT_NEAR(later.moved_months, 9.8, 1e-12);
-  EXPECT_FALSE(later.within_80);
-  EXPECT_FALSE(later.within_95);
-  EXPECT_GT(later.crps_months, same.crps_months);
-}
-
 double weight_of_law(const std::string& scenario, std::size_t tests) {
   const auto average = AverageForecaster::make({"average", kWholeLife_months}).value();
   const auto& concrete = dynamic_cast<const AverageForecaster&>(*average);

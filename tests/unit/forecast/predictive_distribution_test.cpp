@@ -107,10 +107,6 @@ TEST(ProperScores, ForecastsOfOneLifeAreOneCluster) {
   EXPECT_NEAR(mean.standard_error, 0.5 / std::sqrt(3.0), kRounding);
   EXPECT_EQ(mean.values, 30);
   EXPECT_FALSE(clustered_mean(std::vector<Cluster>{{1.0, 1}}));
-  const Interval interval = bootstrap_mean(lives, 0.9, 1).value();
-  EXPECT_LT(interval.low, 0.2);
-  EXPECT_GT(interval.high, 0.8);
-  EXPECT_EQ(bootstrap_mean(lives, 0.9, 1)->low, interval.low);
 }
 
 TEST(ProperScores, HistogramCountsEveryValueOnce) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/unit/report/example.hpp"
+#include "tests/unit/report/explanation_json_reader.hpp"
 
 namespace sealwatch::report {
 namespace {
@@ -114,21 +115,6 @@ TEST(ReportJson, ASizeThatIsNotKnownIsNull) {
   EXPECT_TRUE(json["physics"][0]["engineering_share"].is_null());
   EXPECT_EQ(json["parameter_details"][0]["after_at_bound"], true);
   EXPECT_EQ(json["parameter_details"][1]["after_at_bound"], false);
-}
-
-TEST(ReportJson, AnErrorNamesTheKey) {
-  Json json = written(example_explanation());
-  json["physics"][0]["parameters"][0]["value"] = "4010";
-  auto read = explanation_from_json(json.dump());
-  ASSERT_FALSE(read);
-  EXPECT_EQ(read.error().place, "value");
-  json = written(example_explanation());
-  json.erase("power");
-  read = explanation_from_json(json.dump());
-  ASSERT_FALSE(read);
-  EXPECT_EQ(read.error().describe(), "power: is missing");
-  EXPECT_FALSE(explanation_from_json("{"));
-  EXPECT_FALSE(explanation_from_json("{\"schema\": \"sealwatch.fit/1\"}"));
 }
 
 TEST(ReportJson, LongTermsAreThinned) {

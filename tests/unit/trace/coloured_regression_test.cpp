@@ -98,12 +98,12 @@ TEST(Course, GoesThroughItsSamplesAndKnowsItsSlope) {
   EXPECT_EQ(course.at(9.0).first, x.back());
 }
 
-TEST(SmoothSlope, TakesAsManySamplesAsTheNoiseNeeds) {
+TEST(SmoothCourse, TakesAsManySamplesAsTheNoiseNeeds) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal(0.0, 1e-3);
   VectorXd ramp(2000);
   for (Index t = 0; t < ramp.size(); ++t) ramp(t) = 0.001 * static_cast<double>(t) + normal(random);
-  const VectorXd slope = smooth_slope(ramp, 0.01);
+  const VectorXd slope = smooth_course(ramp, 0.01).slope;
   EXPECT_NEAR(slope(1000), 0.1, 0.03);
   EXPECT_LT((slope.array() - 0.1).matrix().norm() / std::sqrt(2000.0), 0.015);
 }

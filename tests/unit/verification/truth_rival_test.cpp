@@ -1,5 +1,5 @@
 // What the strata about the limits of tests hide is hidden indeed: recomputed by the generator alone, whole sets.
-#include "services/verification/truth/rival.hpp"
+#include "tests/unit/verification/truth_rival.hpp"
 
 #include <gtest/gtest.h>
 

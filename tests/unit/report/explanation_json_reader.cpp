@@ -1,9 +1,10 @@
+#include "tests/unit/report/explanation_json_reader.hpp"
+
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "sealwatch/core/json_depth.hpp"
-#include "services/common/report/explanation_json.hpp"
 
 namespace sealwatch::report {
 namespace {

@@ -1,4 +1,4 @@
-#include "services/verification/truth/rival.hpp"
+#include "tests/unit/verification/truth_rival.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

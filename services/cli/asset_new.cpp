@@ -127,10 +127,7 @@ std::string range_text(const std::vector<Recording>& tests, const std::string& c
 }
 
 std::string left_aside(const Understood& log) {
-  std::string text;
-  if (!log.tests.empty())
-    for (const std::string& column : log.tests.front().left_aside) text.append(text.empty() ? "" : ", ").append(column);
-  return text;
+  return log.tests.empty() ? "" : text::joined(log.tests.front().left_aside);
 }
 
 std::string mapping_text(const ColumnMapping& mapping) {
@@ -148,7 +145,7 @@ std::string model_name(const PlantDescription& plant, const fs::path& folder) {
 
 std::string columns_text(const Understood& log, const std::vector<std::size_t>& columns) {
   std::string text;
-  for (const std::size_t column : columns) text.append(text.empty() ? "" : ", ").append(log.offer.columns[column].text);
+  for (const std::size_t column : columns) text::add_to_list(text, log.offer.columns[column].text);
   return text;
 }
 
@@ -298,7 +295,7 @@ void print_not_found(const Understood& log, const std::string& file) {
     const std::string name = channel.name + " [" + channel.unit + "]";
     const std::string may_be = may_be_it(log, channel);
     if (may_be.empty())
-      absent.append(absent.empty() ? "" : ", ").append(name).append(channel.input ? " (input)" : "");
+      text::add_to_list(absent, name + (channel.input ? " (input)" : ""));
     else
       std::printf("  %s %s not found in %s: %s\n", channel.input ? "input" : "output", name.c_str(), file.c_str(),
                   may_be.c_str());

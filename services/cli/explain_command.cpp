@@ -17,6 +17,7 @@
 #include "services/common/report/explanation_sections.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "services/common/runtime/large_blocks.hpp"
+#include "services/common/text/format.hpp"
 #include "services/common/text/readable.hpp"
 #include "services/common/text/words.hpp"
 
@@ -118,9 +119,9 @@ void print_effect(const FoundEffect& effect) {
   if (!effect.regime.empty()) std::printf("    acts: %s\n", wrapped(effect.regime, kWidth, 4).c_str());
   std::string others;
   for (const mismatch::LawAt& other : effect.indistinguishable)
-    others += (others.empty() ? "" : ", ") +
-              (effect.is_another_form(other) ? "another form of it (" + other.law + ")"
-                                             : text::in_words(other.id) + " of " + report::the_element(other.element));
+    text::add_to_list(others, effect.is_another_form(other)
+                                  ? "another form of it (" + other.law + ")"
+                                  : text::in_words(other.id) + " of " + report::the_element(other.element));
   if (!others.empty()) std::printf("    %s\n", wrapped("indistinguishable from: " + others, kWidth, 4).c_str());
 }
 
@@ -130,8 +131,9 @@ void print_channels(const char* which, const mismatch::PooledFit& fit, bool chan
               changed ? "after" : "");
   for (const mismatch::ChannelComparison& channel : fit.channels) {
     std::printf("  %-24s %14s ", channel.channel.c_str(), number(channel.rms_before).c_str());
-    std::printf("%14s %12.2f", changed ? number(channel.rms_after).c_str() : "", channel.nrmse_before);
-    changed ? std::printf(" %12.2f\n", channel.nrmse_after) : std::printf("\n");
+    std::printf("%14s %12s", changed ? number(channel.rms_after).c_str() : "",
+                text::format("{:.2f}", channel.nrmse_before).c_str());
+    std::printf("%s\n", changed ? text::format(" {:12.2f}", channel.nrmse_after).c_str() : "");
   }
 }
 
@@ -153,8 +155,7 @@ void print_bounds(const Explanation& explanation) {
   for (const mismatch::ParameterShift& shift : explanation.parameters) {
     if (!shift.before_at_bound && !shift.after_at_bound) continue;
     const double value = shift.after_at_bound ? shift.after : shift.before;
-    text.append(text.empty() ? "" : "; ").append(shift.name).append(" ");
-    text.append(text::readable(value, shift.unit)).append(" (datasheet ");
+    text::add_to_list(text, shift.name + " " + text::readable(value, shift.unit) + " (datasheet ", "; ");
     text.append(text::readable(shift.datasheet, shift.unit));
     if (changed && !shift.after_at_bound) text.append("; before anything was added");
     if (changed && !shift.before_at_bound) text.append("; with what was found");
@@ -170,9 +171,10 @@ void print_estimates(const Explanation& explanation) {
   for (const mismatch::ParameterShift& shift : explanation.parameters) {
     const bool told = std::isfinite(shift.after_std) && !shift.after_at_bound;
     if (!told || !(std::abs(shift.after - shift.datasheet) > kShown * std::abs(shift.datasheet))) continue;
-    text.append(text.empty() ? "" : "; ").append(shift.name).append(" ");
-    text.append(text::readable_with_error(shift.after, shift.after_std, shift.unit)).append(" (asset file ");
-    text.append(text::readable(shift.datasheet, shift.unit)).append(")");
+    text::add_to_list(text,
+                      shift.name + " " + text::readable_with_error(shift.after, shift.after_std, shift.unit) +
+                          " (asset file " + text::readable(shift.datasheet, shift.unit) + ")",
+                      "; ");
   }
   if (!text.empty()) std::printf("\n  %s\n", wrapped("fitted: " + text, kWidth, 4).c_str());
 }

@@ -8,6 +8,7 @@
 #include "services/cli/terminal.hpp"
 #include "services/common/forecast/history.hpp"
 #include "services/common/text/format.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -94,8 +95,8 @@ std::string json_of(const FleetFit& fit, const FleetErrors& errors, const FleetC
 
 void print_text(const FleetFit& fit, const FleetErrors& errors, const FleetConstants& constants) {
   const forecast::FleetPopulation reference;
-  std::printf("%d %s; the reference counts as %g lives more\n", fit.lives, fit.lives == 1 ? "life" : "lives",
-              kReferenceLives);
+  std::printf("%d %s; the reference counts as %s lives more\n", fit.lives, fit.lives == 1 ? "life" : "lives",
+              text::general(kReferenceLives).c_str());
   if (fit.passed_over > 0)
     std::printf("  passed over, with fewer than %d tests: %d\n", forecast::kFewestTestsOfLife, fit.passed_over);
   std::printf("  %-22s %14s    %-12s %14s\n", "constant", "fleet", "std. error", "reference");

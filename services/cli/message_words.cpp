@@ -70,8 +70,7 @@ std::string content(const TestWindow& m) {
 std::string content(const TestFeatures& m) {
   std::string text;
   for (const Quantity& feature : m.features)
-    text +=
-        (text.empty() ? "" : ", ") + text::in_words(feature.name) + " " + text::readable(feature.value, feature.unit);
+    text::add_to_list(text, text::in_words(feature.name) + " " + text::readable(feature.value, feature.unit));
   return text;
 }
 std::string content(const StateReport& m) {

@@ -12,6 +12,7 @@
 #include "sealwatch/port/patient_publish.hpp"
 #include "services/cli/commands.hpp"
 #include "services/common/runtime/admission.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -83,7 +84,7 @@ class ReadersOfAct {
     const auto earlier = earlier_.find(status.service);
     const std::size_t reason = status.last_error.find(refused_);
     if (earlier == earlier_.end() || earlier->second == status.last_error || reason == std::string::npos) return;
-    refusing_ += (refusing_.empty() ? "" : ", ") + status.service;
+    text::add_to_list(refusing_, status.service);
     why_ = status.last_error.substr(reason + refused_.size());
   }
   [[nodiscard]] const std::vector<std::string>& waiting() const { return waiting_; }

@@ -7,15 +7,14 @@
 
 #include "services/cli/session.hpp"
 #include "services/common/recording/recording_file.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 
 void tell_left_aside(const Recording& recording, const std::string& plant) {
   if (recording.left_aside.empty()) return;
-  std::string columns;
-  for (const std::string& column : recording.left_aside) columns.append(columns.empty() ? "" : ", ").append(column);
   std::fprintf(stderr, "sealwatch: %s: left aside, as plant %s does not know them: %s\n", recording.file.c_str(),
-               plant.c_str(), columns.c_str());
+               plant.c_str(), text::joined(recording.left_aside).c_str());
 }
 
 void tell_warnings(const Recording& recording) {

@@ -17,6 +17,7 @@
 #include "services/cli/supervisor.hpp"
 #include "services/common/runtime/in_process_pipeline.hpp"
 #include "services/common/runtime/stream_reader.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -116,7 +117,7 @@ class LiveReplay {
       if (quiescence_.missing().empty()) return true;
     }
     std::string missing;
-    for (const std::string& service : quiescence_.missing()) missing += (missing.empty() ? "" : ", ") + service;
+    for (const std::string& service : quiescence_.missing()) text::add_to_list(missing, service);
     complain(Error{
         .file = {},
         .place = {},

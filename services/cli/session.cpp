@@ -21,6 +21,7 @@
 #include "services/common/runtime/configuration_loader.hpp"
 #include "services/common/runtime/process_end.hpp"
 #include "services/common/text/format.hpp"
+#include "services/common/text/words.hpp"
 #include "services/common/transport/dds_bus.hpp"
 
 namespace sealwatch::cli {
@@ -112,7 +113,7 @@ std::string running_services(Session& session, const std::vector<std::string>& w
           running[status->service] = status->service + " (process " + std::to_string(status->process_id) + ")";
   }
   std::string text;
-  for (const auto& [service, words] : running) text += (text.empty() ? "" : ", ") + words;
+  for (const auto& [service, words] : running) text::add_to_list(text, words);
   return text;
 }
 

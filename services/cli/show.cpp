@@ -14,6 +14,7 @@
 #include "services/cli/session.hpp"
 #include "services/cli/state_journals.hpp"
 #include "services/common/recording/recording_file.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -57,7 +58,7 @@ Result<std::string> advice_for(const std::string& name, StateJournals& journals)
   if (journals.unread(topic_name(Topic::advisory)) != nullptr) return std::string("give the id of a message or a test");
   const auto assets = journals.assets(Topic::advisory);
   if (!assets) return fail(assets.error());
-  for (const std::string& asset : *assets) advice += (advice.empty() ? "" : ", ") + asset;
+  for (const std::string& asset : *assets) text::add_to_list(advice, asset);
   return "give the id of a message, of a test (PST id), or an asset for its newest advisory; assets here: " +
          (advice.empty() ? "none" : advice);
 }

@@ -117,8 +117,7 @@ std::string signs_text(const trace::TraceComparison& comparison) {
 
 std::string listed(const std::vector<Alteration>& alterations) {
   std::string text;
-  for (const Alteration& alteration : alterations)
-    text.append(text.empty() ? "" : "; ").append(alteration_text(alteration));
+  for (const Alteration& alteration : alterations) text::add_to_list(text, alteration_text(alteration), "; ");
   return text;
 }
 

@@ -11,6 +11,7 @@
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/supervisor.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -33,7 +34,7 @@ class Startup {
     if (complained_ || std::chrono::steady_clock::now() < begin_ + kPatience) return;
     complained_ = true;
     std::string names;
-    for (const std::string& name : silent_) names.append(names.empty() ? "" : ", ").append(name);
+    for (const std::string& name : silent_) text::add_to_list(names, name);
     std::fprintf(stderr, "sealwatch: not all services run: no heartbeat from %s within %d s\n", names.c_str(),
                  static_cast<int>(kPatience.count()));
   }

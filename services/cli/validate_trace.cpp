@@ -12,6 +12,7 @@
 #include "services/cli/trace_words.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "services/common/runtime/channel_map_file.hpp"
+#include "services/common/text/numbers.hpp"
 #include "services/common/text/readable.hpp"
 #include "services/common/text/words.hpp"
 
@@ -37,14 +38,13 @@ void print_channel(const trace::ChannelComparison& channel) {
   std::printf("\n  %s: %s (p %s)\n", text::in_words(channel.name).c_str(),
               channel.differs ? "differs beyond noise" : "no difference beyond noise",
               text::p_value_text(channel.p_value).c_str());
-  std::printf("    difference %s rms, noise %s, %s effective samples of %zu; NRMSE %.2f %%\n",
+  std::printf("    difference %s rms, noise %s, %s effective samples of %zu; NRMSE %s\n",
               text::readable(channel.rms, channel.unit).c_str(),
               text::readable(channel.noise_std, channel.unit).c_str(),
-              text::number_text(channel.effective_samples).c_str(), channel.recorded.size(), channel.nrmse_percent);
+              text::number_text(channel.effective_samples).c_str(), channel.recorded.size(),
+              text::percent(channel.nrmse_percent / 100.0, 2).c_str());
   if (!channel.differs) return;
-  std::string by;
-  for (const std::string& group : channel.by) by.append(by.empty() ? "" : "; ").append(group);
-  std::printf("    seen in: %s\n", wrapped(by, kWidth, 4).c_str());
+  std::printf("    seen in: %s\n", wrapped(text::separated(channel.by), kWidth, 4).c_str());
   for (const trace::MisfitInterval& interval : channel.intervals)
     std::printf("    %6s of it from %s to %s s\n", text::percent_text(interval.misfit_share).c_str(),
                 number(interval.begin_s).c_str(), number(interval.end_s).c_str());
@@ -65,9 +65,7 @@ void print_text(const trace::TraceComparison& comparison) {
     print_alterations(comparison.common);
   }
   const auto list = [](const char* where, const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) text.append(text.empty() ? "" : ", ").append(name);
-    if (!text.empty()) std::printf("  only in the %s, not compared: %s\n", where, text.c_str());
+    if (!names.empty()) std::printf("  only in the %s, not compared: %s\n", where, text::joined(names).c_str());
   };
   std::printf("\n");
   for (const std::string& remark : comparison.remarks) std::printf("  %s\n", remark.c_str());

@@ -14,6 +14,7 @@
 #include "services/cli/state_journals.hpp"
 #include "services/cli/summary.hpp"
 #include "services/common/message/json.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -82,7 +83,7 @@ class Writers {
     if (told_ || silent_.empty() || now < begin_ + kPatience) return;
     told_ = true;
     std::string names;
-    for (const std::string& name : silent_) names.append(names.empty() ? "" : ", ").append(name);
+    for (const std::string& name : silent_) text::add_to_list(names, name);
     const bool all = silent_.size() == expected_;
     std::fprintf(
         stderr,

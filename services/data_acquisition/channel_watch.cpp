@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "services/common/text/format.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch {
 namespace {
@@ -84,7 +85,7 @@ ChannelStatus ChannelWatch::status(const DataAcquisitionOptions& options) const 
   ChannelStatus status{.channel = name_, .state = ChannelState::OK, .reason = {}};
   if (count_ == 0) return {.channel = name_, .state = ChannelState::NOT_USED, .reason = "not recorded"};
   const auto note = [&status](const std::string& reason, bool failed) {
-    status.reason += (status.reason.empty() ? "" : "; ") + reason;
+    text::add_to_list(status.reason, reason, "; ");
     if (failed) status.state = ChannelState::FAILED;
     if (!failed && status.state == ChannelState::OK) status.state = ChannelState::UNKNOWN;
   };

@@ -8,6 +8,7 @@
 #include "sealwatch/signal/filters.hpp"
 #include "sealwatch/signal/statistics.hpp"
 #include "services/common/text/format.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch {
 namespace {
@@ -78,7 +79,7 @@ void AlignmentCheck::note_sign(const std::string& channel, bool correct, const s
   AlignmentRemark& one = remark(channel);
   one.sign_swapped = true;
   one.corrected = one.corrected || correct;
-  one.remark += std::string(one.remark.empty() ? "" : "; ") + "sign swapped: " + why;
+  text::add_to_list(one.remark, "sign swapped: " + why, "; ");
   if (correct) alignment_.corrections[channel].swap_sign = true;
 }
 
@@ -88,8 +89,10 @@ void AlignmentCheck::note_offset(const std::string& channel, double offset_s, do
   one.time_offset_s = offset_s;
   one.time_offset_std_s = std_s;
   one.corrected = one.corrected || correct;
-  one.remark += text::format("{}{:.0f} ± {:.0f} ms {}: {}", one.remark.empty() ? "" : "; ", 1e3 * std::abs(offset_s),
-                             1e3 * std_s, offset_s > 0.0 ? "late" : "early", why);
+  text::add_to_list(one.remark,
+                    text::format("{:.0f} ± {:.0f} ms {}: {}", 1e3 * std::abs(offset_s), 1e3 * std_s,
+                                 offset_s > 0.0 ? "late" : "early", why),
+                    "; ");
   if (correct) alignment_.corrections[channel].shift_s = offset_s;
 }
 

@@ -6,6 +6,7 @@
 #include "sealwatch/signal/features.hpp"
 #include "sealwatch/signal/test_record.hpp"
 #include "services/common/text/format.hpp"
+#include "services/common/text/words.hpp"
 #include "services/data_manipulation/alignment_check.hpp"
 #include "services/data_manipulation/window.hpp"
 
@@ -21,7 +22,7 @@ bool has_begin(const std::vector<SampleBlock>& blocks) {
 }
 
 void note(std::string& reasons, const std::string& reason) {
-  if (!reason.empty()) reasons += (reasons.empty() ? "" : "; ") + reason;
+  if (!reason.empty()) text::add_to_list(reasons, reason, "; ");
 }
 
 TestWindow describe(const std::vector<SampleBlock>& blocks) {

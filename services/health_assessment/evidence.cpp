@@ -23,7 +23,7 @@ std::string separating(const Signature& one, const Signature& other, const std::
   for (const Deviation& deviation : deviations) {
     const std::string& quantity = deviation.judgement.quantity;
     if (!deviation.informative || one.moves.count(quantity) == other.moves.count(quantity)) continue;
-    names += (names.empty() ? "" : ", ") + text::in_words(quantity);
+    text::add_to_list(names, text::in_words(quantity));
   }
   return names;
 }

@@ -9,6 +9,7 @@
 #include "sealwatch/message/provenance.hpp"
 #include "sealwatch/message/worn_words.hpp"
 #include "services/common/text/numbers.hpp"
+#include "services/common/text/words.hpp"
 #include "services/prognostic_assessment/judge_estimate.hpp"
 #include "services/prognostic_assessment/pst_request.hpp"
 #include "services/prognostic_assessment/self_scoring.hpp"
@@ -27,8 +28,7 @@ std::string dates_after(const std::vector<forecast::ConditionSample>& samples, U
   std::string text;
   for (const forecast::ConditionSample& sample : samples)
     if (sample.time > begin)
-      text += (text.empty() ? "" : ", ") + format_date(sample.time) + " (" +
-              text::condition_in_percent(sample.condition) + ")";
+      text::add_to_list(text, format_date(sample.time) + " (" + text::condition_in_percent(sample.condition) + ")");
   return text;
 }
 

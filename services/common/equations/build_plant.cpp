@@ -9,6 +9,7 @@
 #include "services/common/equations/reference_quantity.hpp"
 #include "services/common/equations/site_table.hpp"
 #include "services/common/equations/text_equations.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::equations {
 namespace {
@@ -194,9 +195,8 @@ class Builder {
     for (const NeededSize& size : needed) units.push_back(size.unit);
     for (const std::string& unit : sizes_to_give(text_.law_sizes, units)) {
       const NeededSize& size = *std::ranges::find(needed, unit, &NeededSize::unit);
-      missing.append(missing.empty() ? "" : ", ").append(unit);
-      there.append(there.empty() ? "" : "; ")
-          .append(unit + ": " + in_words(reference_quantity(size, text_.sites), unit));
+      text::add_to_list(missing, unit);
+      text::add_to_list(there, unit + ": " + in_words(reference_quantity(size, text_.sites), unit), "; ");
     }
     if (!missing.empty())
       faults_("law_sizes", fault(missing, "is missing: units of laws that fit the plant's sites",

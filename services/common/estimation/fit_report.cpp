@@ -9,6 +9,7 @@
 #include "services/common/estimation/interpolation_error.hpp"
 #include "services/common/text/numbers.hpp"
 #include "services/common/text/readable.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch {
 namespace {
@@ -270,8 +271,7 @@ void report_parameters(const PemProblem& problem, const PemOptimum& optimum, con
 std::string unidentified(const std::vector<EstimatedParameter>& parameters) {
   std::string names;
   for (const EstimatedParameter& parameter : parameters)
-    if (!std::isfinite(parameter.std_error) && !parameter.at_bound)
-      names += (names.empty() ? "" : ", ") + parameter.name;
+    if (!std::isfinite(parameter.std_error) && !parameter.at_bound) text::add_to_list(names, parameter.name);
   return names;
 }
 

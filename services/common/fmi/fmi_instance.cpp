@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <sstream>
 
+#include "services/common/text/words.hpp"
+
 namespace sealwatch::fmi {
 
 Group::Group(std::vector<Handle> variables) : handles(std::move(variables)), size(elements(handles)) {
@@ -53,7 +55,7 @@ void Messages::add(int status, const std::string& category, const std::string& m
     if (text_.empty()) keep(words);
     return;
   }
-  text_ += (text_.empty() ? "" : "; ") + words;
+  text::add_to_list(text_, words, "; ");
   if (text_.size() > kMost) text_.erase(0, text_.size() - kMost);
   keep(text_);
 }

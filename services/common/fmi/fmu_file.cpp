@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "services/common/fmi/setting_values.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::fmi {
 namespace {
@@ -123,8 +124,7 @@ Status FmuFile::find_binary() {
   std::string others;  // of this platform
   for (const std::string& member : unpacked_.members) {
     if (!member.starts_with("binaries/")) continue;
-    if (member.starts_with("binaries/" + platform + "/") && member.ends_with(".so"))
-      others += (others.empty() ? "" : ", ") + member;
+    if (member.starts_with("binaries/" + platform + "/") && member.ends_with(".so")) text::add_to_list(others, member);
     const std::string rest = member.substr(9);
     if (const auto end = rest.find('/'); end != std::string::npos && end > 0) platforms.insert(rest.substr(0, end));
   }
@@ -132,7 +132,7 @@ Status FmuFile::find_binary() {
     return fail(refusal("has no binary " + binary_ + ", after its modelIdentifier, but " + others,
                         "give the binary the name that modelIdentifier says"));
   std::string there;
-  for (const std::string& one : platforms) there += (there.empty() ? "" : ", ") + one;
+  for (const std::string& one : platforms) text::add_to_list(there, one);
   const bool has_sources = std::ranges::any_of(
       unpacked_.members, [](const std::string& member) { return member.starts_with("sources/") && member.size() > 8; });
   return fail(refusal(

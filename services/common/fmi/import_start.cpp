@@ -10,6 +10,7 @@
 
 #include "services/common/fmi/fmu_plant.hpp"
 #include "services/common/text/numbers.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::fmi {
 namespace {
@@ -197,7 +198,7 @@ class UnitStart {
     constexpr std::size_t kMostNamed = 10;
     std::string names;
     for (const Movable& one : untried.first(std::min(untried.size(), kMostNamed)))
-      names += (names.empty() ? "" : ", ") + fmu_.name_of(one.of);
+      text::add_to_list(names, fmu_.name_of(one.of));
     if (untried.size() > kMostNamed) names += " and " + std::to_string(untried.size() - kMostNamed) + " more";
     options_.tell("whether these move the start of a state was not tried: " + names +
                   "; write `start: fmu` for a state that they move");

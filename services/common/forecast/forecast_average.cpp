@@ -8,6 +8,7 @@
 #include "sealwatch/forecast/forecast_score.hpp"
 #include "services/common/forecast/forecast_parts.hpp"
 #include "services/common/text/numbers.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::forecast {
 namespace {
@@ -132,12 +133,8 @@ PredictiveForecast AverageForecaster::answer(const ForecastRequest& request) con
     speaking_weight += weight[m];
     shares.push_back(weight[m]);
     distributions.push_back(std::move(*member.distribution));
-    names += names.empty() ? "" : ", ";
-    names += settings_[m].method;
-    names += " ";
-    names += std::to_string(settings_[m].window_months);
-    names += " ";
-    names += text::in_percent(weight[m]);
+    text::add_to_list(names, settings_[m].method + " " + std::to_string(settings_[m].window_months) + " " +
+                                 text::in_percent(weight[m]));
   }
   if (silent && silent_weight >= speaking_weight) {
     if (silent->state == ForecastState::past_threshold)

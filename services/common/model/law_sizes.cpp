@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "services/common/model/plant_tables.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch {
 namespace {
@@ -65,7 +66,7 @@ std::string missing_law_sizes(const PlantDescription& plant) {
   for (auto unit = units.begin(); unit != units.end(); ++unit)
     if (std::find(units.begin(), unit, *unit) == unit &&
         std::ranges::find(plant.law_sizes, *unit, &LawSize::unit) == plant.law_sizes.end())
-      missing.append(missing.empty() ? "" : ", ").append(*unit);
+      text::add_to_list(missing, *unit);
   return missing;
 }
 

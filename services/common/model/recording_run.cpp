@@ -10,6 +10,7 @@
 
 #include "services/common/model/sensor_filter.hpp"
 #include "services/common/model/sensor_laws.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
 namespace {
@@ -103,7 +104,7 @@ class RecordingRun {
  private:
   [[nodiscard]] tl::unexpected<Error> no_start() const {
     return fail(Error{.file = {},
-                      .place = "t = " + std::to_string(input_.times().front()) + " s",
+                      .place = "t = " + text::general(input_.times().front()) + " s",
                       .value = system_.trouble(),
                       .rule = "the simulation has no start: the states that settle there find no rest",
                       .advice = "check the start of the others, or let fewer states settle"});
@@ -114,7 +115,7 @@ class RecordingRun {
     if (integrator_.statistics().steps >= most_steps_)
       return fail(Error{
           .file = {},
-          .place = "t = " + std::to_string(time) + " s",
+          .place = "t = " + text::general(time) + " s",
           .value = system_.trouble(),
           .rule = "the simulation was given up after " + std::to_string(most_steps_) + " steps",
           .advice = std::string("something explodes, swings fast or is integrated too finely: check the parameters' "
@@ -123,9 +124,9 @@ class RecordingRun {
                                                            "averaged' in the plant's file takes fewer steps"
                                                          : "")});
     if (std::string words = system_.said(); !words.empty())
-      return fail(went_no_further("t = " + std::to_string(time) + " s", std::move(words)));
+      return fail(went_no_further("t = " + text::general(time) + " s", std::move(words)));
     return fail(Error{.file = {},
-                      .place = "t = " + std::to_string(time) + " s",
+                      .place = "t = " + text::general(time) + " s",
                       .value = system_.trouble(),
                       .rule = "the simulation failed: no step size follows the equations from here",
                       .advice = "check the parameters' values and the recorded input around this time"});

@@ -17,6 +17,7 @@
 #include "services/common/recording/plausible_samples.hpp"
 #include "services/common/recording/sidecar.hpp"
 #include "services/common/recording/vector_file.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch {
 namespace {
@@ -108,7 +109,7 @@ Result<Sidecar> read_sidecar(const std::string& path, const PlantDescription& pl
   Result<Sidecar> sidecar = parse_sidecar(*text, plant);
   if (sidecar) return sidecar;
   Error error = sidecar.error();
-  error.advice.append(error.advice.empty() ? "" : "; ").append("this file is read as the sidecar of ").append(path);
+  text::add_to_list(error.advice, "this file is read as the sidecar of " + path, "; ");
   return fail_in(file, error);
 }
 

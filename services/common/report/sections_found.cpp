@@ -9,6 +9,7 @@
 #include "services/common/report/explanation_sections.hpp"
 #include "services/common/report/page.hpp"
 #include "services/common/text/readable.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::report {
 namespace {
@@ -18,7 +19,7 @@ using mismatch::FoundEffect;
 
 std::string elements(const std::vector<std::string>& names) {
   std::string text;
-  for (const std::string& name : names) text.append(text.empty() ? "" : ", ").append(element_name(name));
+  for (const std::string& name : names) text::add_to_list(text, element_name(name));
   return text;
 }
 
@@ -96,7 +97,7 @@ std::string effect_in_short(const FoundEffect& effect) {
                     "small muted");
   std::string others;
   for (const mismatch::LawAt& other : effect.indistinguishable)
-    others += (others.empty() ? "" : "; ") + law_name(other) + " of " + the_element(other.element);
+    text::add_to_list(others, law_name(other) + " of " + the_element(other.element), "; ");
   if (!others.empty()) html += paragraph("Cannot be distinguished from: " + others + ".", "small muted");
   return html;
 }

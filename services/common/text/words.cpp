@@ -35,6 +35,10 @@ std::string separated(const std::vector<std::string>& parts, std::string_view be
   return text;
 }
 
+void add_to_list(std::string& text, std::string_view part, std::string_view between) {
+  text.append(text.empty() ? "" : between).append(part);
+}
+
 std::string count_of(std::size_t count, std::string_view thing) {
   std::string text = std::to_string(count);
   text.append(" ").append(thing);

@@ -15,6 +15,8 @@ namespace sealwatch::text {
 [[nodiscard]] std::string joined(const std::vector<std::string>& parts, std::string_view last = ", ");
 /// With `between` everywhere: "a; b; c".
 [[nodiscard]] std::string separated(const std::vector<std::string>& parts, std::string_view between = "; ");
+/// `part` behind the list that `text` is: "a", then "a, b".
+void add_to_list(std::string& text, std::string_view part, std::string_view between = ", ");
 
 /// "1 test", "2 tests".
 [[nodiscard]] std::string count_of(std::size_t count, std::string_view thing);

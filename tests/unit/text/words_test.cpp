@@ -35,5 +35,14 @@ TEST(Words, CountTheirLettersAsReadersDo) {
   EXPECT_EQ(wrapped("one two three", 8, 2), "one\n  two\n  three");
 }
 
+TEST(Words, AListGrowsPartByPart) {
+  std::string text;
+  add_to_list(text, "a");
+  EXPECT_EQ(text, "a");
+  add_to_list(text, "b");
+  add_to_list(text, "c", "; ");
+  EXPECT_EQ(text, "a, b; c");
+}
+
 }  // namespace
 }  // namespace sealwatch::text

@@ -1,6 +1,7 @@
 // Daemon of layer 6.
 #include "services/advisory_generation/advice_alarm.hpp"
 #include "services/advisory_generation/advisory_generation.hpp"
+#include "services/common/core/build_version.hpp"
 #include "services/common/runtime/daemon.hpp"
 #include "services/common/transport/dds_bus.hpp"
 
@@ -11,6 +12,7 @@ int main(int argc, char** argv) {
   };
   return run_daemon(argc, argv,
                     {.service = "advisory_generation",
+                     .version_line = version_line(),
                      .make_layer = make_layer,
                      .make_bus = make_dds_bus,
                      .refused_by_bus = refused_by_security,

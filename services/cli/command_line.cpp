@@ -4,9 +4,9 @@
 
 #include "sealwatch/core/text.hpp"
 #include "services/cli/arguments.hpp"
-#include "services/cli/build_version.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
+#include "services/common/core/build_version.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -18,8 +18,7 @@ std::string footer_of(const std::string& example) { return "Example:\n  " + exam
 CommandLine::CommandLine()
     : app_("sealwatch: condition monitoring of electro-hydrostatic subsea valve actuators", "sealwatch"),
       chosen_([] { return kBadInput; }) {
-  app_.set_version_flag("--version",
-                        std::string("sealwatch " SEALWATCH_VERSION " (").append(build_version()).append(")"));
+  app_.set_version_flag("--version", version_line());
   app_.require_subcommand(1);
   app_.footer(
       "First steps (docs/tutorial.md):\n"

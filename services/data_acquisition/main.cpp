@@ -1,4 +1,5 @@
 // Daemon of layer 1, with the folder in which recordings are dropped.
+#include "services/common/core/build_version.hpp"
 #include "services/common/runtime/daemon.hpp"
 #include "services/common/runtime/log.hpp"
 #include "services/common/transport/dds_bus.hpp"
@@ -22,6 +23,7 @@ std::shared_ptr<LocalInputs> watch_folder(const Configuration& configuration) {
 int main(int argc, char** argv) {
   return run_daemon(argc, argv,
                     {.service = "data_acquisition",
+                     .version_line = version_line(),
                      .make_layer = [](const Configuration& configuration,
                                       const Clock&) { return std::make_unique<DataAcquisition>(configuration.assets); },
                      .make_bus = make_dds_bus,

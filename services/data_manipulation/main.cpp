@@ -1,4 +1,5 @@
 // Daemon of layer 2.
+#include "services/common/core/build_version.hpp"
 #include "services/common/runtime/daemon.hpp"
 #include "services/common/transport/dds_bus.hpp"
 #include "services/data_manipulation/data_manipulation.hpp"
@@ -8,6 +9,7 @@ int main(int argc, char** argv) {
   return run_daemon(
       argc, argv,
       {.service = "data_manipulation",
+       .version_line = version_line(),
        .make_layer = [](const Configuration& configuration,
                         const Clock&) { return std::make_unique<DataManipulation>(configuration.assets); },
        .make_bus = make_dds_bus,

@@ -1,4 +1,5 @@
 // Daemon of layer 4.
+#include "services/common/core/build_version.hpp"
 #include "services/common/mismatch/mismatch_explainer.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "services/common/runtime/daemon.hpp"
@@ -13,6 +14,7 @@ int main(int argc, char** argv) {
   };
   return run_daemon(argc, argv,
                     {.service = "health_assessment",
+                     .version_line = version_line(),
                      .make_layer = make_layer,
                      .make_bus = make_dds_bus,
                      .refused_by_bus = refused_by_security});

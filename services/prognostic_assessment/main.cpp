@@ -1,6 +1,7 @@
 // Daemon of layer 5.
 #include "sealwatch/estimation/pem_estimator.hpp"
 #include "sealwatch/forecast/configured.hpp"
+#include "services/common/core/build_version.hpp"
 #include "services/common/runtime/daemon.hpp"
 #include "services/common/transport/dds_bus.hpp"
 #include "services/prognostic_assessment/prognostic_assessment.hpp"
@@ -15,6 +16,7 @@ int main(int argc, char** argv) {
   };
   return run_daemon(argc, argv,
                     {.service = "prognostic_assessment",
+                     .version_line = version_line(),
                      .make_layer = make_layer,
                      .make_bus = make_dds_bus,
                      .refused_by_bus = refused_by_security});

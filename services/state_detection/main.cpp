@@ -1,4 +1,5 @@
 // Daemon of layer 3.
+#include "services/common/core/build_version.hpp"
 #include "services/common/model/model_simulator.hpp"
 #include "services/common/runtime/daemon.hpp"
 #include "services/common/transport/dds_bus.hpp"
@@ -17,6 +18,7 @@ int main(int argc, char** argv) {
   };
   return run_daemon(argc, argv,
                     {.service = "state_detection",
+                     .version_line = version_line(),
                      .make_layer = make_layer,
                      .make_bus = make_dds_bus,
                      .refused_by_bus = refused_by_security,

@@ -5,6 +5,7 @@
 
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
+#include "services/common/core/build_version.hpp"
 #include "services/verification/command/arguments.hpp"
 
 namespace {
@@ -12,6 +13,7 @@ namespace {
 int run(int argc, char** argv) {
   using namespace sealwatch::cli;
   CLI::App app("verify estimates, forecasts and explain against known truths", "sealwatch verify");
+  app.set_version_flag("--version", sealwatch::version_line());
   VerifyOptions options;
   VerifyPart part = VerifyPart::rul;
   add_verify_arguments(app, options, [&part](VerifyPart chosen) { part = chosen; });

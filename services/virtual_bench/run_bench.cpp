@@ -4,6 +4,7 @@
 #include <csignal>
 #include <iostream>
 
+#include "services/common/core/build_version.hpp"
 #include "services/common/runtime/configuration_loader.hpp"
 #include "services/common/runtime/log.hpp"
 #include "services/common/runtime/process_end.hpp"
@@ -32,6 +33,7 @@ struct Arguments {
 tl::expected<Arguments, int> parse(int argc, const char* const* argv) {
   Arguments out;
   CLI::App app("sealwatch virtual bench: simulated actuators that send their tests on the bus");
+  app.set_version_flag("--version", version_line());
   app.add_option("--config", out.config, "sealwatch.yaml or the directory that holds it")
       ->envname("SEALWATCH_CONFIG")
       ->capture_default_str();

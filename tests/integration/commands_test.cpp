@@ -381,6 +381,18 @@ TEST_F(Commands, ReplayWhoseResultsFindNoRoomSaysSo) {
   EXPECT_THAT(replay.output, ::testing::AllOf(HasSubstr("advisory.jsonl"), HasSubstr("make room")));
 }
 
+TEST_F(Commands, EachProgramNamesVersionCommitAndBuild) {
+  const Finished own = run({"sealwatch", "--version"});
+  EXPECT_THAT(own.output, ::testing::MatchesRegex("sealwatch [0-9.]+ \\(commit [^,]+, [^,]+, [^,]+\\)\n"));
+  for (const std::string name :
+       {"verify", "data-acquisition", "data-manipulation", "state-detection", "health-assessment",
+        "prognostic-assessment", "advisory-generation", "virtual-bench"}) {
+    const Finished other = run({"sealwatch-" + name, "--version"});
+    EXPECT_EQ(other.status, 0) << name;
+    EXPECT_EQ(other.output, own.output) << name;
+  }
+}
+
 /// Half an answer must not look like a whole one: in scripts, the exit status is all that is looked at.
 TEST_F(Commands, AnswersThatFindNoRoomAreNoSuccess) {
   const std::string sealwatch = program("sealwatch"), asset_file = "'" + asset() + "'";

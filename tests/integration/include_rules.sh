@@ -104,7 +104,7 @@ rules() {
   # those), and no line of its integration, sensors or signal processing.
   local names='sealwatch/(config|core)/|sealwatch/forecast/degradation\.|sealwatch/model/plant_description\.|services/common/text/'
   only '^services/virtual_bench/' \
-    "$names|sealwatch/(message|port)/|sealwatch/model/(eha|physics)\\.|services/common/model/physics_terms\\.|services/common/(runtime|transport)/|services/virtual_bench/" \
+    "$names|sealwatch/(message|port)/|sealwatch/model/(eha|physics)\\.|services/common/model/physics_terms\\.|services/common/(core|runtime|transport)/|services/virtual_bench/" \
     'the bench shares equations and laws with the estimator, and nothing that solves or measures' || failed=1
   only '^services/verification/truth/' \
     "$names|services/verification/truth/|services/virtual_bench/(random|rosenbrock|profile|controller)\\." \

@@ -178,6 +178,8 @@ check_programs() {
   [[ "$("${as_user[@]}" "$root/usr/bin/sealwatch" --version)" == "sealwatch $version (commit "* ]] || fail "the program has another version"
   "${as_user[@]}" "$root/usr/bin/sealwatch" config check --config "$root/etc/sealwatch" || fail "the default configuration is faulty"
   for service in "${services[@]}" virtual-bench; do
+    [ "$("${as_user[@]}" "$root/usr/bin/sealwatch-$service" --version)" = "$("${as_user[@]}" "$root/usr/bin/sealwatch" --version)" ] ||
+      fail "sealwatch-$service has another version"
     "${as_user[@]}" "$root/usr/bin/sealwatch-$service" --help | grep -e --config >/dev/null || fail "sealwatch-$service gives no help"
   done
 }

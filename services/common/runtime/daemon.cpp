@@ -44,10 +44,10 @@ struct Arguments {
 };
 
 /// What the command line says, or the exit status when there is nothing to run.
-tl::expected<Arguments, int> parse(int argc, const char* const* argv, const std::string& service) {
+tl::expected<Arguments, int> parse(int argc, const char* const* argv, const DaemonParts& parts) {
   Arguments arguments;
-  CLI::App app("sealwatch service " + service + ": one layer of ISO 13374, run by systemd or `sealwatch up`");
-  app.set_version_flag("--version", std::string("sealwatch ") + kVersion);
+  CLI::App app("sealwatch service " + parts.service + ": one layer of ISO 13374, run by systemd or `sealwatch up`");
+  app.set_version_flag("--version", parts.version_line);
   app.add_option("--config", arguments.config, "sealwatch.yaml or the directory that holds it")
       ->envname("SEALWATCH_CONFIG")
       ->capture_default_str();
@@ -219,7 +219,7 @@ int run(const Arguments& arguments, const DaemonParts& parts) {
 
 int run_daemon(int argc, const char* const* argv, const DaemonParts& parts) {
   give_large_blocks_back();
-  const auto arguments = parse(argc, argv, parts.service);
+  const auto arguments = parse(argc, argv, parts);
   if (!arguments) return arguments.error();
   int status = kInternalFailure;
   try {

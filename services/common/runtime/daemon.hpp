@@ -2,6 +2,7 @@
 //
 //   int main(int argc, char** argv) {
 //     return sealwatch::run_daemon(argc, argv, {.service = "state_detection",
+//                                               .version_line = version_line(),
 //                                               .make_layer = [](const Configuration& c, const Clock&) { ... },
 //                                               .make_bus = sealwatch::make_dds_bus});
 //   }
@@ -27,7 +28,8 @@ namespace sealwatch {
 inline constexpr const char* kSupervisor = "SEALWATCH_SUPERVISOR";
 
 struct DaemonParts {
-  std::string service;  ///< "state_detection"
+  std::string service;       ///< "state_detection"
+  std::string version_line;  ///< what --version says
   /// Makes the layer of one asset, from a configuration that has no other.
   std::function<std::unique_ptr<Layer>(const Configuration&, const Clock&)> make_layer;
   std::function<Result<std::unique_ptr<Bus>>(const Configuration&)> make_bus;

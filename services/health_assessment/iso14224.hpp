@@ -1,4 +1,6 @@
-// Failure modes and mechanisms of ISO 14224 (annex B) for the faults that sealwatch proposes.
+// Failure modes and mechanisms of ISO 14224:2016 (annex B) for the faults that sealwatch proposes. INL is spelled out as
+// "internal leakage utility medium" in the SINTEF PDS Data Handbook (2021 edition, list of abbreviations); the tables of
+// the standard itself were not at hand.
 #pragma once
 
 #include <string>

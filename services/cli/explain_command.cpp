@@ -179,6 +179,14 @@ void print_estimates(const Explanation& explanation) {
   if (!text.empty()) std::printf("\n  %s\n", wrapped("fitted: " + text, kWidth, 4).c_str());
 }
 
+void print_steps(const std::vector<std::string>& steps) {
+  if (!steps.empty()) std::printf("\n");
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const std::string number = steps.size() > 1 ? std::to_string(k + 1) + ". " : "";
+    std::printf("  %s%s\n", k == 0 ? "next: " : "      ", wrapped(number + steps[k], kWidth - 6, 8).c_str());
+  }
+}
+
 void print_text(const Explanation& explanation, const Files& files) {
   std::printf("%s: %s\n  %s\n", explanation.asset_id.c_str(), std::string(name_of(explanation.verdict)).c_str(),
               wrapped(explanation.summary, kWidth, 2).c_str());
@@ -193,7 +201,7 @@ void print_text(const Explanation& explanation, const Files& files) {
   print_channels(explanation.holdout_recordings.empty() ? "left out in turn" : "held out", explanation.holdout,
                  changed);
   print_channels("fitted", explanation.fit, changed);
-  if (!explanation.next_test.empty()) std::printf("\n  next: %s\n", wrapped(explanation.next_test, kWidth, 8).c_str());
+  print_steps(report::steps_of(explanation));
   std::printf("\n  look at %s\n  scripts read %s\n  the asset with %s: %s\n", files.html.c_str(), files.json.c_str(),
               !explanation.effects.empty() ? "what was found"
               : changed                    ? "the value that explains as much"

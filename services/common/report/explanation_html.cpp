@@ -69,16 +69,16 @@ std::string step_for(const mismatch::FoundEffect& effect, const std::string& wor
 }
 
 // Once the physics is known: look there, calculate with it, settle what is open.
-std::string steps_after(const Explanation& explanation) {
-  std::string html = "<ol>\n";
-  const auto add = [&html](const std::string& step) { html.append("<li>").append(escaped(step)).append("</li>\n"); };
+std::vector<std::string> steps_after(const Explanation& explanation) {
+  std::vector<std::string> steps;
   const std::optional<ConditionSetting>& wear = explanation.explained.condition;
   const std::string worn_part = wear ? wear->part : "";
-  for (const mismatch::FoundEffect& effect : explanation.effects) add(step_for(effect, worn_part));
-  add("Use asset.explained.yaml instead of the asset file in fit, forecast, simulate and explain. For the services, "
+  for (const mismatch::FoundEffect& effect : explanation.effects) steps.push_back(step_for(effect, worn_part));
+  steps.emplace_back(
+      "Use asset.explained.yaml instead of the asset file in fit, forecast, simulate and explain. For the services, "
       "put it in place of the asset file.");
-  if (!explanation.next_test.empty()) add(explanation.next_test);
-  return html.append("</ol>\n");
+  if (!explanation.next_test.empty()) steps.push_back(explanation.next_test);
+  return steps;
 }
 
 std::string arrow(double before, double after) {
@@ -164,21 +164,34 @@ std::string banner(const Explanation& explanation) {
   return html.append("</div>\n").append(figures(explanation));
 }
 
+std::vector<std::string> steps_of(const Explanation& explanation) {
+  if (explanation.verdict == Verdict::mismatch) return steps_after(explanation);
+  if (explanation.verdict == Verdict::consistent)
+    return {"No repair is needed. " +
+            (explanation.next_test.empty()
+                 ? "Compare each new test with this model: sealwatch validate --asset asset.explained.yaml TEST.csv"
+                 : explanation.next_test)};
+  if (explanation.next_test.empty()) return {};
+  return {explanation.next_test};
+}
+
 std::string next_steps(const Explanation& explanation) {
-  std::string steps = paragraph(explanation.next_test);
+  const std::vector<std::string> all = steps_of(explanation);
+  if (all.empty()) return {};
+  std::string html;
+  for (const std::string& step : all) html.append("<li>").append(escaped(step)).append("</li>\n");
   if (explanation.verdict == Verdict::mismatch)
-    steps = steps_after(explanation);
-  else if (explanation.verdict == Verdict::consistent)
-    steps = paragraph("No repair is needed. See below what these recordings could not have shown. " +
-                      explanation.next_test);
-  else if (explanation.next_test.empty())
-    return {};
+    html = "<ol>\n" + html + "</ol>\n";
+  else
+    html = paragraph(all.front());
+  if (explanation.verdict == Verdict::consistent)
+    html += paragraph("See below what these recordings could not have shown.", "small muted");
   const bool record =
       explanation.verdict == Verdict::undetermined && explanation.asset_values.empty() && explanation.not_asked.empty();
   return std::string("<div class=\"steps\">\n<h2>")
       .append(record ? "What to record next" : "What to do next")
       .append("</h2>\n")
-      .append(steps)
+      .append(html)
       .append("</div>\n");
 }
 

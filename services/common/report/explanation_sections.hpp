@@ -31,6 +31,8 @@ struct Misfit {
 [[nodiscard]] std::string banner(const mismatch::Explanation& explanation);
 [[nodiscard]] std::string first_screen(const mismatch::Explanation& explanation);
 [[nodiscard]] std::string next_steps(const mismatch::Explanation& explanation);
+/// The same in plain text, the first one first; none where an undetermined explanation knows of none.
+[[nodiscard]] std::vector<std::string> steps_of(const mismatch::Explanation& explanation);
 
 /// Below it, closed until they are opened. Paper gets the missing term, traces and totals; without a finding the power.
 [[nodiscard]] std::string where_section(const mismatch::Explanation& explanation);

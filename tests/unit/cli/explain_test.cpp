@@ -120,6 +120,13 @@ TEST_F(ExplainCommand, JsonIsTheReport) {
   EXPECT_EQ(out_, content(std::filesystem::path(options_.directory) / "report.json"));
 }
 
+TEST_F(ExplainCommand, AnAnswerEndsWithWhatToDoNext) {
+  found_.verdict = mismatch::Verdict::consistent;
+  EXPECT_EQ(run(), kOk);
+  EXPECT_THAT(out_, HasSubstr("next: No repair is needed."));
+  EXPECT_THAT(out_, HasSubstr("sealwatch validate --asset"));
+}
+
 TEST_F(ExplainCommand, UndeterminedIsTheAnswerNo) {
   found_.verdict = mismatch::Verdict::undetermined;
   found_.next_test = "Record a faster stroke.";

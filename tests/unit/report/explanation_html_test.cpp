@@ -89,6 +89,8 @@ TEST(ReportHtml, SaysWhatToDoNextWhateverTheVerdict) {
   cut_off.not_asked = {"laws"};
   EXPECT_THAT(explanation_to_html(cut_off), HasSubstr("What to do next")) << "no recording is asked for";
   EXPECT_THAT(explanation_to_html(consistent_example()), HasSubstr("What to do next"));
+  EXPECT_EQ(steps_of(consistent_example()).size(), 1U);
+  EXPECT_THAT(steps_of(consistent_example()).front(), HasSubstr("sealwatch validate --asset asset.explained.yaml"));
 }
 
 TEST(ReportHtml, TheFirstScreenSaysAFindingOnce) {

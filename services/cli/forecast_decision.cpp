@@ -94,7 +94,7 @@ std::string decision_table(const std::vector<DecisionOption>& decision) {
 
 std::string cost_words(const ForecastQuestion& question) {
   if (!question.costs)
-    return "Expected costs are not shown because replacement costs are unknown. Give --costs, or set `costs` of the "
+    return "Expected costs are not shown because replacement costs are unknown. Give --costs, or set the costs of the "
            "asset's site in the configuration.";
   const SiteCosts& costs = *question.costs;
   std::string text =

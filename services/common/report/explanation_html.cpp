@@ -23,7 +23,7 @@ struct VerdictWords {
 VerdictWords words_of(const Explanation& explanation) {
   switch (explanation.verdict) {
     case Verdict::consistent:
-      return {"good", "Consistent: simulation and recordings agree within the noise"};
+      return {"good", "Consistent: no mismatch was found"};
     case Verdict::mismatch:
       return {"bad", explanation.asset_values.empty() ? "Mismatch found and explained"
                      : explanation.values_beside_effects()

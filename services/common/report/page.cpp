@@ -86,7 +86,8 @@ margin:0;font-size:1.02rem;color:var(--text)}.part>summary span{margin-left:.7re
 body{max-width:none;padding:0;font-size:12px;line-height:1.4}h1{font-size:15pt}h2{font-size:11pt;margin-top:1rem}p,ul,ol{max-width:none}
 .plots>div,tr,.banner,.steps,.screen>div,.drawing{break-inside:avoid}h2,h3{break-after:avoid}summary{break-after:avoid;list-style:none}
 details:not([open]):not(.paper){display:none}
-.scroll{overflow:visible;background:none}table{font-size:8pt}.figures{gap:.3rem 1.5rem;margin:.4rem 0}.figures div{min-width:0}.figures b{font-size:11pt}
+.scroll{overflow:visible;background:none}table{font-size:8pt}.together{break-inside:avoid}thead{display:table-header-group}
+td.n{white-space:nowrap}.figures{flex-wrap:nowrap;gap:.3rem 1.5rem;margin:.4rem 0}.figures div{min-width:0}.figures b{font-size:11pt}
 .banner,.steps{padding:.4rem .8rem;margin:.5rem 0}.plots{gap:.2rem .8rem}.plots>div{width:48.5%}
 svg[role]{width:100%}svg text{font-size:12px}}
 )css";
@@ -279,7 +280,9 @@ void Table::row_of_html(const std::vector<std::string>& cells, std::string_view 
 }
 
 std::string Table::html() const {
-  return std::string("<div class=\"scroll\"><table>\n<thead><tr>")
+  return std::string("<div class=\"scroll\"><table")
+      .append(together_ ? " class=\"together\"" : "")
+      .append(">\n<thead><tr>")
       .append(head_)
       .append("</tr></thead>\n<tbody>\n")
       .append(rows_)

@@ -45,12 +45,15 @@ class Table {
   explicit Table(const std::vector<std::string>& headers);
   void row(const std::vector<std::string>& cells);
   void row_of_html(const std::vector<std::string>& cells, std::string_view css_class = {});
+  /// On paper it is not divided between pages: its first rows say what the others belong to.
+  void keep_together() { together_ = true; }
   [[nodiscard]] bool empty() const { return rows_.empty(); }
   [[nodiscard]] std::string html() const;
 
  private:
   std::vector<std::string> classes_;
   std::string head_, rows_;
+  bool together_ = false;
 };
 
 }  // namespace sealwatch::report

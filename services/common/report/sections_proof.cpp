@@ -168,6 +168,7 @@ std::string comparison_section(const Explanation& explanation) {
   const std::vector<std::string> columns = {
       "recording", "", "channel", ">misfit / noise", ">fit, %", ">p, white", ">p, independent of input"};
   Table pooled(columns);
+  pooled.keep_together();
   add_rows(explanation.holdout_recordings.empty() ? "all left out in turn" : "all held out", "",
            explanation.holdout.channels, changed, pooled);
   add_rows("all fitted", "", explanation.fit.channels, changed, pooled);

@@ -1,11 +1,14 @@
 #include "services/common/report/page.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/unit/report/well_formed.hpp"
 
 namespace sealwatch::report {
 namespace {
+
+using ::testing::HasSubstr;
 
 TEST(Page, EscapesWhatHtmlReads) {
   EXPECT_EQ(escaped("<script>alert(\"a\" & 'b')</script>"),
@@ -71,6 +74,15 @@ TEST(WellFormed, SeesWhatIsWrong) {
   EXPECT_NE(what_is_wrong("<p>"), "");
   EXPECT_NE(what_is_wrong("<p a=1></p>"), "");
   EXPECT_NE(what_is_wrong("<p a=\"1\" a=\"2\"></p>"), "");
+}
+
+TEST(Page, ATableOnPaperKeepsItsHeaderAndStaysTogetherWhereThatIsAsked) {
+  Table table({"law", ">size"});
+  table.row({"drag", "1.0"});
+  EXPECT_THAT(table.html(), HasSubstr("<table>\n<thead>"));
+  table.keep_together();
+  EXPECT_THAT(table.html(), HasSubstr("<table class=\"together\">\n<thead>"));
+  EXPECT_THAT(html_page("t", table.html()), HasSubstr("thead{display:table-header-group}"));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "sealwatch/core/text.hpp"
+#include "sealwatch/model/physics.hpp"
 #include "services/cli/columns.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/plant_laws.hpp"
@@ -109,6 +110,11 @@ void print_parameters(const PlantDescription& plant) {
                 rows);
 }
 
+std::vector<std::string> kinds_from(SiteKind first, SiteKind last) {
+  const auto& names = EnumNames<SiteKind>::kNames;
+  return {names.begin() + static_cast<std::ptrdiff_t>(first), names.begin() + static_cast<std::ptrdiff_t>(last) + 1};
+}
+
 void print_elements(const ShownPlant& plant) {
   std::vector<TableRow> rows;
   for (const ElementDescription& element : plant.description.elements) {
@@ -120,9 +126,9 @@ void print_elements(const ShownPlant& plant) {
                                 (site.laws.empty() ? "no law of the catalogue" : text::joined(site.laws, ", "))});
   }
   rows.push_back({"sensor:CHANNEL", "measurement of an output"});
-  rows.push_back({"", "sensor_bias, sensor_gain, sensor_lag, sensor_drift, sensor_saturation"});
+  rows.push_back({"", text::joined(kinds_from(SiteKind::sensor_bias, SiteKind::sensor_saturation))});
   rows.push_back({"input:CHANNEL", "record of an input"});
-  rows.push_back({"", "input_bias, input_gain, input_delay, input_clock_rate"});
+  rows.push_back({"", text::joined(kinds_from(SiteKind::input_gain, SiteKind::input_clock_rate))});
   rows.push_back({"clock", "the recording's clock"});
   rows.push_back({"", "clock_rate"});
   print_table("Elements, their sites, and the laws that explain tries there (sealwatch laws)", rows);

@@ -28,6 +28,7 @@ class LocalInputs {
   /// back; to `awake` it is none.
   virtual void look(const LayerAtRest& woken, const LayerAtRest& awake) = 0;
   /// What to call, in any thread, when there is something to take, before the first look.
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): others keep it
   virtual void on_some(std::function<void()> /*call*/) {}
   /// Whether there is something to take.
   [[nodiscard]] virtual bool has_some() = 0;

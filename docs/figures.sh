@@ -55,6 +55,9 @@ same() {
     END { if (FNR != lines) { print "other length"; exit 1 } }' "$1" "$2"
 }
 faults=0
+for file in docs/figures/*.svg; do
+  ! grep -q '<foreignObject' "$file" || { echo "$file has HTML in it, which few viewers of SVG draw"; faults=1; }
+done
 for file in "$out"/*.svg; do
   name=docs/figures/$(basename "$file")
   difference=$(same "$name" "$file" 2>&1) || { echo "$name is not what the program draws (line $difference)"; faults=1; }

@@ -2,12 +2,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include "sealwatch/message/topics.hpp"
 #include "services/common/report/actuator_drawing.hpp"
 #include "services/common/report/page.hpp"
 #include "tests/figures/figures.hpp"
+#include "tests/figures/page_screen.hpp"
 
 namespace sealwatch::figures {
 namespace {
@@ -53,8 +55,23 @@ std::vector<Route> all_routes() {
           {Topic::maintenance_event, operators, {acquisition, detection, prognosis, advice}, ", retraction"}};
 }
 
+/// Of the topics that carry assets' data, between the services alone; heartbeats and requests for repetition, too.
+constexpr std::array kAmongServices = {Topic::act_record};
+constexpr std::string_view kAlsoAmongServices = ", service_status, resend_request";
+
+/// A picture without one of the topics is not drawn.
+void expect_all_topics(const std::array<Box, kNodes>& boxes, const std::vector<Route>& routes) {
+  std::set<Topic> drawn(kAmongServices.begin(), kAmongServices.end());
+  for (const Box& box : boxes) drawn.insert(box.next.begin(), box.next.end());
+  for (const Route& route : routes) drawn.insert(route.topic);
+  if (drawn.size() != EnumNames<Topic>::kNames.size())
+    throw std::runtime_error("the picture of the layers lacks a topic: add it to the boxes or routes");
+}
+
 constexpr double kStep = 92.0, kHeight = 52.0, kWidth = 400.0, kLeft = 20.0, kTop = 14.0;
 constexpr double kLane = 27.0;
+
+constexpr int kScreenWidth = 1180;  // of the pages
 
 std::string joined(const std::vector<Topic>& topics) {
   std::string text;
@@ -180,7 +197,7 @@ std::string actuator() {
 std::string layers() {
   constexpr double kMiddle = kLeft + 0.5 * kWidth;
   const std::array<Box, kNodes> boxes = all_boxes();
-  Canvas canvas("The six layers with their topics", 700, static_cast<int>(kStep * static_cast<double>(kNodes)));
+  Canvas canvas("The six layers with their topics", 700, static_cast<int>(kStep * static_cast<double>(kNodes)) + 24);
   double y = kTop;
   for (const Box& one : boxes) {
     canvas.raw(box(kLeft, y, kWidth, kHeight));
@@ -193,6 +210,10 @@ std::string layers() {
     y += kStep;
   }
   const std::vector<Route> routes = all_routes();
+  expect_all_topics(boxes, routes);
+  canvas.text(
+      "among the services: " + joined({kAmongServices.begin(), kAmongServices.end()}).append(kAlsoAmongServices), kLeft,
+      y, "tick");
   Lanes lanes(routes);
   for (const Route& route : routes) lanes.draw(route, canvas);
   canvas.raw(lanes.names());
@@ -200,12 +221,7 @@ std::string layers() {
 }
 
 std::string first_screen(const std::string& report_page) {
-  constexpr int kWidth = 1180, kHeight = 716;
-  Canvas canvas("The first screen of a report", kWidth, kHeight);
-  canvas.raw("<foreignObject x=\"0\" y=\"0\" width=\"" + std::to_string(kWidth) + "\" height=\"" +
-             std::to_string(kHeight) + "\"><body xmlns=\"http://www.w3.org/1999/xhtml\">\n" +
-             between(report_page, "<body>", "<section") + "</body></foreignObject>\n");
-  return canvas.svg();
+  return page_screen("The first screen of a report", between(report_page, "<body>", "<section"), kScreenWidth);
 }
 
 std::string before_and_after(const std::string& report_page, const std::string& channel) {
@@ -227,12 +243,8 @@ std::string before_and_after(const std::string& report_page, const std::string& 
 }
 
 std::string forecast_screen(const std::string& forecast_page) {
-  constexpr int kScreenWidth = 1180, kScreenHeight = 590;
-  Canvas canvas("The forecast page: what to do, by when, and why", kScreenWidth, kScreenHeight);
-  canvas.raw("<foreignObject x=\"0\" y=\"0\" width=\"" + std::to_string(kScreenWidth) + "\" height=\"" +
-             std::to_string(kScreenHeight) + "\"><body xmlns=\"http://www.w3.org/1999/xhtml\">\n" +
-             between(forecast_page, "<body>", "<div class=\"narrow\">") + "</body></foreignObject>\n");
-  return canvas.svg();
+  return page_screen("The forecast page: what to do, by when, and why",
+                     between(forecast_page, "<body>", "<div class=\"narrow\">"), kScreenWidth);
 }
 
 }  // namespace sealwatch::figures

@@ -33,7 +33,7 @@ class Graph {
     node.followed = pst_id.empty() || header.pst_id == pst_id;
     if (!node.followed) return {};
     for (const std::string& source : header.source_ids)
-      if (const Status read_too = read(source, header.pst_id); !read_too) return read_too;
+      if (Status read_too = read(source, header.pst_id); !read_too) return read_too;
     return {};
   }
 
@@ -168,7 +168,7 @@ void add_text(const Group& group, std::size_t depth, std::string& text) {
       else
         groups.push_back({&source});
     }
-  std::ranges::stable_partition(groups, [](const Group& one) { return !one.front()->followed; });
+  std::stable_partition(groups.begin(), groups.end(), [](const Group& one) { return !one.front()->followed; });
   for (const Group& one : groups) add_text(one, depth + 1, text);
 }
 

@@ -101,7 +101,7 @@ class LiveReplay {
 
  private:
   Status join() {
-    if (const Status joined = session_.bus->subscribe(ReplayLog::topics()); !joined) return joined;
+    if (Status joined = session_.bus->subscribe(ReplayLog::topics()); !joined) return joined;
     return session_.bus->subscribe_service_topics();
   }
 

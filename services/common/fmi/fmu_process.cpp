@@ -45,7 +45,7 @@ Result<std::unique_ptr<FmuProcess>> FmuProcess::start(const std::string& file, S
 }
 
 Status FmuProcess::load() {
-  if (const Status launched = launch(); !launched) return launched;
+  if (Status launched = launch(); !launched) return launched;
   Packer packer = this->packer();
   put_setup(packer, setup_);
   return request(Operation::load, "loading the binary", limits().start_s);

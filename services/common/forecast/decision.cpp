@@ -23,7 +23,7 @@ Status InterventionCosts::validate() const {
                                                     {"unused_month", unused_month},
                                                     {"months_to_vessel", months_to_vessel}};
   for (const auto& [place, value] : entries)
-    if (const Status valid = not_negative(place, value); !valid) return valid;
+    if (Status valid = not_negative(place, value); !valid) return valid;
   return {};
 }
 

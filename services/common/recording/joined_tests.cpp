@@ -25,7 +25,7 @@ std::vector<std::string> parts_of(const std::string& path) {
 }
 
 Status JoinedTests::append(const std::string& file, std::vector<LogTest> next) {
-  if (const Status again = refuse_again(file, next.front()); !again) return again;
+  if (Status again = refuse_again(file, next.front()); !again) return again;
   const std::vector<double>& last_s = next.back().read.samples.time_s;
   const OwnTimes own{.begin_s = last_s.front(), .end_s = last_s.back(), .step_s = usual_step(last_s)};
   auto rest = next.begin();
@@ -33,7 +33,7 @@ Status JoinedTests::append(const std::string& file, std::vector<LogTest> next) {
     const Result<std::optional<double>> shift_s = shift_behind(next.front());
     if (!shift_s) return fail(shift_s.error());
     if (*shift_s)
-      if (const Status joined = go_on_with(std::move(*rest++), **shift_s); !joined) return joined;
+      if (Status joined = go_on_with(std::move(*rest++), **shift_s); !joined) return joined;
     shift_s_ = next.size() == 1 ? shift_s->value_or(0.0) : 0.0;
   }
   std::move(rest, next.end(), std::back_inserter(tests_));
@@ -89,7 +89,7 @@ Status JoinedTests::go_on_with(LogTest next, double shift_s) {
     channel.values.insert(channel.values.end(), more->values.begin(), more->values.end());
   }
   std::vector<double>& time_s = next.read.samples.time_s;
-  if (const Status shifted = shift_times(time_s, shift_s); !shifted) return shifted;
+  if (Status shifted = shift_times(time_s, shift_s); !shifted) return shifted;
   last.samples.time_s.insert(last.samples.time_s.end(), time_s.begin(), time_s.end());
   last.content_hash = content_hash(last.content_hash + next.read.content_hash);
   return {};

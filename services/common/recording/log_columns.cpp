@@ -81,7 +81,7 @@ class Mapper {
       return fail(error_at("channel " + channel, mapping.column,
                            "is the column of channel " + same->column.name + " too",
                            "give each channel a column of its own"));
-    if (const Status units = compare_units(channel, offered_[*index], mapping); !units) return units;
+    if (Status units = compare_units(channel, offered_[*index], mapping); !units) return units;
     return take(channel, *index, unit_for(channel, offered_[*index], mapping), mapping);
   }
 

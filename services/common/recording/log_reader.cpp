@@ -82,7 +82,7 @@ class LogReader {
       if (!number) return fail(error_in(k, number.error().rule, number.error().advice));
       numbers[k] = *number;
     }
-    if (const Status time = check_time(numbers[time_]); !time) return time;
+    if (Status time = check_time(numbers[time_]); !time) return time;
     numbers[time_] += shift_s_;
     if (values_[time_].empty()) first_row_ = rows_.row();
     for (std::size_t k = 0; k < numbers.size(); ++k) values_[k].push_back(numbers[k]);
@@ -157,7 +157,7 @@ class LogReader {
     test.start_time = time_format_.utc(values_[time_].front());
     test.clock = time_format_.clock(values_[time_].front());
     if (time_format_.is_absolute())
-      if (const Status shifted = shift_times(values_[time_], -values_[time_].front()); !shifted) return shifted;
+      if (Status shifted = shift_times(values_[time_], -values_[time_].front()); !shifted) return shifted;
     std::vector<Column> columns;
     for (const MappedColumn& mapped : mapped_.columns) columns.push_back(mapped.column);
     test.read = assemble(std::move(columns), std::move(values_));

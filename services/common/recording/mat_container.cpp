@@ -211,7 +211,7 @@ Status check_element(std::FILE* file, Tag tag, bool swapped, Chain& chain) {
     inner[1] = in_order(inner[1], swapped);
   }
   ArrayElement array(bytes, inner[1], swapped);
-  if (const Status checked = array.check(); !checked) return checked;
+  if (Status checked = array.check(); !checked) return checked;
   if (array.is_nested() && !chain.allows_nested)
     return fail(error_at("row 1, column " + printable(array.name()), {}, "must be one vector of real numbers",
                          kTakeOutOrStore));
@@ -244,7 +244,7 @@ Status check_chain(std::FILE* file, bool swapped, Chain& chain) {
     const Tag tag = {in_order(raw[0], swapped), in_order(raw[1], swapped)};
     at += 8 + static_cast<long>(tag.bytes);
     if (at > size) return cut_at(size);
-    if (const Status element = check_element(file, tag, swapped, chain); !element) return element;
+    if (Status element = check_element(file, tag, swapped, chain); !element) return element;
   }
   return {};
 }

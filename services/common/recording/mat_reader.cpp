@@ -151,7 +151,7 @@ class NestedVectors {
         matvar_t* const inner = Mat_VarGetStructFieldByIndex(&variable, field, k);
         const std::string path = name + "/" + (count > 1 ? std::to_string(k + 1) + "/" : "") + names[field];
         if (inner == nullptr) continue;
-        if (const Status added = add(*inner, path, depth + 1); !added) return added;
+        if (Status added = add(*inner, path, depth + 1); !added) return added;
       }
     return {};
   }

@@ -186,7 +186,7 @@ Status serve(const DaemonParts& parts, const Configuration& configuration) {
                      runner_options(parts, configuration));
   listener.wake_at_stop(bus->get());
   const auto bus_ends = std::shared_ptr<void>(nullptr, [&](void*) { listener.wake_at_stop(nullptr); });
-  if (const Status started = runner.start(); !started) return started;
+  if (Status started = runner.start(); !started) return started;
   ::malloc_trim(0);  // restoring the past took memory that is not needed again
   notify_service_manager("READY=1");
   const Status ran = runner.run(listener.stop());

@@ -61,7 +61,7 @@ std::string Journal::place_of(const std::string& connection) {
 }
 
 Status Journal::check(const std::string& connection) {
-  if (const Status known = check_kind(connection); !known) return known;
+  if (Status known = check_kind(connection); !known) return known;
   if (connection.starts_with(kFile)) return check_file(connection, file_of(connection));
   Database database;
   database.name = without_password(connection);

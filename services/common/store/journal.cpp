@@ -75,7 +75,7 @@ Status Journal::for_each_page(const std::string& query, const Visitor& visit) {
     if (!rows) return fail(rows.error());
     if (*rows == 0) return {};
     for (const Message& message : page)
-      if (const Status visited = visit(message); !visited) return visited;
+      if (Status visited = visit(message); !visited) return visited;
   }
 }
 

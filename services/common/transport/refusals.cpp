@@ -45,8 +45,9 @@ bool tells_a_refusal(std::string_view line) {
   const auto same = [](char a, char b) {
     return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
   };
-  return std::ranges::any_of(kWords,
-                             [&](std::string_view words) { return !std::ranges::search(line, words, same).empty(); });
+  return std::ranges::any_of(kWords, [&](std::string_view words) {
+    return std::search(line.begin(), line.end(), words.begin(), words.end(), same) != line.end();
+  });
 }
 
 void note_refusal(const std::string& words) {

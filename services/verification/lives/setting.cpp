@@ -46,9 +46,9 @@ Status check_degradation(const forecast::DegradationSetting& d) {
     return fail(wrong(std::string("degradation ") + name, exact(range.min) + " .. " + exact(range.max),
                       "must go from a smaller to a larger number"));
   };
-  if (const Status ok = ordered("initial_gamma", d.initial_gamma); !ok) return ok;
-  if (const Status ok = ordered("steepening_limit", d.steepening_limit); !ok) return ok;
-  if (const Status ok = ordered("irregularity", d.irregularity); !ok) return ok;
+  if (Status ok = ordered("initial_gamma", d.initial_gamma); !ok) return ok;
+  if (Status ok = ordered("steepening_limit", d.steepening_limit); !ok) return ok;
+  if (Status ok = ordered("irregularity", d.irregularity); !ok) return ok;
   if (!(d.n_0 > 0.0)) return fail(wrong("degradation n_0", exact(d.n_0), "must be positive"));
   if (d.steepening_limit.min < 0.0)
     return fail(wrong("degradation steepening_limit_min", exact(d.steepening_limit.min), "must not be negative"));
@@ -102,12 +102,12 @@ Status validate(const VerificationSetting& setting) {
   if (setting.lives < 1)
     return fail(
         wrong("lives", std::to_string(setting.lives), "an empty fleet verifies nothing", "give at least one life"));
-  if (const Status ok = range("lives", setting.lives, 1, 10'000'000, "must be at most ten million"); !ok) return ok;
-  if (const Status ok = range("months", setting.months, 12, 600, "must be 12 to 600"); !ok) return ok;
-  if (const Status ok = range("sample rate", setting.sample_rate_Hz, 10, 1000, "must be 10 to 1000 Hz"); !ok) return ok;
-  if (const Status ok = range("load range", setting.load_range, 0, 0.5, "must be 0 to 0.5"); !ok) return ok;
-  if (const Status ok = range("missing share", setting.missing_share, 0, 0.9, "must be 0 to 0.9"); !ok) return ok;
-  if (const Status ok = range("cut share", setting.cut_share, 0, 1, "must be 0 to 1"); !ok) return ok;
+  if (Status ok = range("lives", setting.lives, 1, 10'000'000, "must be at most ten million"); !ok) return ok;
+  if (Status ok = range("months", setting.months, 12, 600, "must be 12 to 600"); !ok) return ok;
+  if (Status ok = range("sample rate", setting.sample_rate_Hz, 10, 1000, "must be 10 to 1000 Hz"); !ok) return ok;
+  if (Status ok = range("load range", setting.load_range, 0, 0.5, "must be 0 to 0.5"); !ok) return ok;
+  if (Status ok = range("missing share", setting.missing_share, 0, 0.9, "must be 0 to 0.9"); !ok) return ok;
+  if (Status ok = range("cut share", setting.cut_share, 0, 1, "must be 0 to 1"); !ok) return ok;
   if (!setting.asset.condition)
     return fail(wrong("asset " + setting.asset.asset_id + ", key seal", {}, "is needed to simulate a life",
                       "give resistance_100 and resistance_60"));

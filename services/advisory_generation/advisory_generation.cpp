@@ -35,6 +35,7 @@ void AdvisoryGeneration::restore(const Message& own_output) {
   if (advisory->state == AdvisoryState::superseded) return;
   stand(*advisory, asset);
   const Header& header = advisory->header;
+  if (asset.retracted.meet(header.pst_id)) judge_anew(asset);
   if (is_answer_to_replacement(*advisory)) {
     note_replacement(header.source_ids.front(), UtcTime{header.event_time_ns}, asset);
   } else if (const auto renewed = retraction_of_renewed(*advisory)) {
@@ -107,6 +108,7 @@ void AdvisoryGeneration::advise(const Evidence& evidence, Conclusion& conclusion
   const std::string& asset_id = evidence.life.asset_id;
   Asset& asset = assets_[asset_id];
   const Header& cause = evidence.life.header;
+  if (asset.retracted.meet(cause.pst_id)) judge_anew(asset);
   if (!asset.retracted.counts(cause.pst_id)) return;
   std::optional<UtcTime> now;
   if (cause.event_time_known) now = UtcTime{cause.event_time_ns};

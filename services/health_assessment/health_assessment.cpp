@@ -88,11 +88,21 @@ void HealthAssessment::restore(const Message& own_output) {
   if (const auto retraction = retraction_answered_by(*report)) {
     state.past.apply(*retraction);
     Conclusion released;  // what it frees is consumed already
-    state.discrepancies.forget([&](const std::string& pst_id) { return !state.past.counts(pst_id); }, released);
+    forget_uncounted(state, released);
     return;
   }
+  Conclusion released;  // what it frees is consumed already
+  meet(state, report->header.pst_id, released);
   state.past.add(*report);
   state.discrepancies.restore(*report, is_first_after_replacement(report->header));
+}
+
+void HealthAssessment::forget_uncounted(AssetState& state, Conclusion& conclusion) {
+  state.discrepancies.forget([&](const std::string& pst_id) { return !state.past.counts(pst_id); }, conclusion);
+}
+
+void HealthAssessment::meet(AssetState& state, const std::string& pst_id, Conclusion& conclusion) {
+  if (state.past.meet(pst_id)) forget_uncounted(state, conclusion);
 }
 
 std::size_t HealthAssessment::held() const {
@@ -127,6 +137,7 @@ Conclusion HealthAssessment::receive(const Message& input) {
     }
     state.complete.clear();
     const TestFeatures features = state.features.take(report.header.pst_id, conclusion);
+    meet(state, report.header.pst_id, conclusion);
     const HealthReport health = conclude(state, report, features);
     conclusion.outputs.emplace_back(health);
     conclusion.consumed.push_back(features.header.message_id);
@@ -207,7 +218,7 @@ void HealthAssessment::retract(AssetState& state, const StateReport& answer, Con
   const auto retraction = retraction_answered_by(answer);
   conclusion.consumed.push_back(answer.header.message_id);
   state.past.apply(*retraction);
-  state.discrepancies.forget([&](const std::string& pst_id) { return !state.past.counts(pst_id); }, conclusion);
+  forget_uncounted(state, conclusion);
   const std::optional<HealthReport> last = state.past.last();
   HealthReport report = last.value_or(HealthReport{});
   report.asset_id = answer.asset_id;

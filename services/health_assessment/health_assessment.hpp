@@ -61,6 +61,9 @@ class HealthAssessment final : public Layer {
   [[nodiscard]] HealthReport conclude(AssetState& state, const StateReport& report, const TestFeatures& features) const;
   [[nodiscard]] AssetState& state_of(const std::string& asset_id);
   /// The health that the tests which count say, after `answer`, with which state detection answered a retraction.
+  /// Lets go of kept tests that do not count any more.
+  static void forget_uncounted(AssetState& state, Conclusion& conclusion);
+  static void meet(AssetState& state, const std::string& pst_id, Conclusion& conclusion);
   static void retract(AssetState& state, const StateReport& answer, Conclusion& conclusion);
 
   std::map<std::string, AssetConfig> assets_;

@@ -21,6 +21,8 @@ class PastHealth {
  public:
   explicit PastHealth(std::size_t trend_tests = 24) : trend_tests_(trend_tests) {}
 
+  /// Before a test is concluded: whether earlier ones do not count any more (message/retracted_tests.hpp).
+  [[nodiscard]] bool meet(const std::string& pst_id) { return retracted_.meet(pst_id); }
   void add(const HealthReport& report);
   /// From now on the tests that it means do not count, or count again, or the replacement that it means was none.
   void apply(const Retraction& retraction) { retracted_.apply(retraction); }

@@ -37,6 +37,9 @@ void tell_of(const Replacement& replacement, RemainingLife& life);
 
 class AssetHistory {
  public:
+  /// Before a test is concluded: whether earlier ones do not count any more (message/retracted_tests.hpp).
+  [[nodiscard]] bool meet(const std::string& pst_id) { return retracted_.meet(pst_id); }
+  [[nodiscard]] bool counts(const std::string& pst_id) const { return retracted_.counts(pst_id); }
   /// Takes an own output. Tests without event time are only remembered as concluded.
   void add(const LeakageEstimate& estimate);
   void add_replacement(const Replacement& replacement);

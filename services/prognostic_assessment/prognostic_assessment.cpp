@@ -91,8 +91,13 @@ void PrognosticAssessment::restore(const Message& own_output) {
       if (event.tests_known) history_[event.asset_id].name_tests(event.header.message_id, event.test_ids);
 }
 
+void PrognosticAssessment::meet(const std::string& asset_id, const std::string& pst_id) {
+  if (history_[asset_id].meet(pst_id)) latest_.erase(asset_id);
+}
+
 void PrognosticAssessment::remember(const LeakageEstimate& estimate) {
-  if (estimate.header.event_time_known) {
+  meet(estimate.asset_id, estimate.header.pst_id);
+  if (estimate.header.event_time_known && history_[estimate.asset_id].counts(estimate.header.pst_id)) {
     const auto known = latest_.find(estimate.asset_id);
     if (known == latest_.end() || known->second.header.event_time_ns <= estimate.header.event_time_ns)
       latest_[estimate.asset_id] = estimate;
@@ -133,6 +138,7 @@ Conclusion PrognosticAssessment::join(const Input& input, Halves<Input> Pending:
 
 std::vector<Message> PrognosticAssessment::conclude(const HealthReport& health, const TestWindow& window) {
   learn_replacements(health.asset_id, health.header);
+  meet(health.asset_id, health.header.pst_id);
   LeakageEstimate leakage = estimate(health, window);
   leakage.header = concluded_from(health.header, "leakage_estimate", kProducer,
                                   {health.header.message_id, window.header.message_id});

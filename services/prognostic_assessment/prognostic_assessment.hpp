@@ -69,6 +69,7 @@ class PrognosticAssessment final : public Layer {
   void learn_replacements(const std::string& asset_id, const Header& header);
   [[nodiscard]] std::vector<Message> conclude(const HealthReport& health, const TestWindow& window);
   void remember(const LeakageEstimate& estimate);
+  void meet(const std::string& asset_id, const std::string& pst_id);
   [[nodiscard]] Conclusion replaced(const MaintenanceEvent& event);
   void learn_retractions(const std::string& asset_id, const Header& header);
   void apply(const std::string& asset_id, const Retraction& retraction);

@@ -17,6 +17,8 @@ namespace sealwatch {
 
 class PastTests {
  public:
+  /// Before a test is judged: whether earlier ones do not count any more (message/retracted_tests.hpp).
+  [[nodiscard]] bool meet(const std::string& pst_id) { return retracted_.meet(pst_id); }
   /// Takes a test's report. False when the test is retracted: then nothing is learnt from it.
   bool add(const StateReport& report);
   /// From now on the tests that it means do not count, or count again, or the replacement that it means was none.

@@ -98,6 +98,7 @@ void StateDetection::restore(const Message& own_output) {
     static_cast<void>(judge_anew(report->asset_id, state));
     return;
   }
+  if (state.past.meet(report->header.pst_id)) static_cast<void>(judge_anew(report->asset_id, state));
   AssetHistory& history = state.history;
   if (is_first_after_replacement(*report)) history.restart();
   if (!report->header.pst_id.empty()) history.use_accepted(report->accepted_discrepancy);
@@ -179,6 +180,7 @@ void StateDetection::conclude(AssetState& state, const TestFeatures& features, c
   report.header.message_id = "state_report/" + features.header.pst_id;
   report.header.producer = kProducer;
   report.header.source_ids.clear();
+  if (state.past.meet(report.header.pst_id)) static_cast<void>(judge_anew(report.asset_id, state));
   add_source(report.header, features.header);
   add_source(report.header, window.header);
   for (const MaintenanceEvent& event : state.events) {

@@ -1,5 +1,6 @@
 // Which tests of one asset count, after what operators retracted and withdrew: the one place that knows it, for layers
-// that remember tests and for who judges the dates of new ones.
+// that remember tests and for who judges the dates of new ones. Tests that the virtual bench made up count until the
+// first recorded one of the asset is known, and never again.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "sealwatch/message/made_up.hpp"
 #include "sealwatch/message/retraction.hpp"
 
 namespace sealwatch {
@@ -18,7 +20,17 @@ namespace sealwatch {
 class RetractedTests {
  public:
   /// A test that is known from now on: "all since a date" means the tests that are known when it is said.
-  void know(const std::string& pst_id, std::optional<UtcTime> time) { tests_[pst_id] = time; }
+  void know(const std::string& pst_id, std::optional<UtcTime> time) {
+    (void)meet(pst_id);
+    tests_[pst_id] = time;
+  }
+
+  /// A test that is about to be known. Whether others that counted do not any more: they were made up, and it was not.
+  [[nodiscard]] bool meet(const std::string& pst_id) {
+    if (has_recorded_ || pst_id.empty() || is_made_up_test(pst_id)) return false;
+    has_recorded_ = true;
+    return std::ranges::any_of(tests_, [](const auto& test) { return is_made_up_test(test.first); });
+  }
 
   [[nodiscard]] bool knows(const std::string& pst_id) const { return tests_.contains(pst_id); }
 
@@ -67,8 +79,10 @@ class RetractedTests {
     return std::ranges::none_of(meant_by(retraction), [this](const std::string& pst_id) { return counts(pst_id); });
   }
 
-  /// Whether no retraction in force means it.
-  [[nodiscard]] bool counts(const std::string& pst_id) const { return !retractions_of_.contains(pst_id); }
+  /// Whether no retraction in force means it, and it was recorded where any was.
+  [[nodiscard]] bool counts(const std::string& pst_id) const {
+    return !retractions_of_.contains(pst_id) && !(has_recorded_ && is_made_up_test(pst_id));
+  }
 
   /// Whether nobody took the replacement of this message id back.
   [[nodiscard]] bool holds(const std::string& replacement_id) const { return !withdrawn_.contains(replacement_id); }
@@ -97,6 +111,7 @@ class RetractedTests {
   }
 
   std::map<std::string, std::optional<UtcTime>> tests_;
+  bool has_recorded_ = false;                           ///< of them, one that nobody made up
   std::map<std::string, std::set<std::string>> named_;  ///< by the id of a retraction of many, as recorded
   std::map<std::string, std::set<std::string>> meant_;  ///< by the id of the retraction in force
   std::map<std::string, std::size_t> retractions_of_;   ///< how many of them mean it, by test

@@ -211,7 +211,8 @@ std::vector<std::string> Admission::take_alike() { return std::exchange(alike_, 
 void Admission::note_test(const Message& message, UtcTime time) {
   RetractedTests& tests = tests_[asset_of(message)];
   std::set<UtcTime>& named = named_[asset_of(message)];
-  const std::string unnamed = kUnnamed + format_utc(time);
+  const std::string_view end = is_of_made_up_test(message) ? kEndOfMadeUpId : std::string_view();
+  const std::string unnamed = kUnnamed + format_utc(time) + std::string(end);
   if (topic_of(message) == Topic::raw_samples) {
     if (!named.contains(time)) tests.know(unnamed, time);
     return;

@@ -206,5 +206,23 @@ TEST_F(AdviceAfterRetraction, DeathAnywhereChangesNothing) {
   for (std::size_t death = 0; death < inputs.size(); ++death) ASSERT_EQ(run(inputs, death), undisturbed) << death;
 }
 
+/// Somebody tried the chain with the virtual bench before the actuator was recorded, with a clock of its own.
+TEST_F(AdviceAfterRetraction, MadeUpTestsAreForgottenOnceOneIsRecorded) {
+  auto made_up = inputs_of(life_until(100, 110, 115.0));
+  for (Message& message : made_up) {
+    header_of(message).pst_id += kEndOfMadeUpId;
+    header_of(message).message_id += kEndOfMadeUpId;
+  }
+  ASSERT_NE(last_of(made_up).action, AdvisoryAction::none);
+  const auto recorded = inputs_of(life_until(60, 66, 200.0));
+  const auto inputs = joined(made_up, recorded);
+  const Advisory advice = last_of(inputs);
+  EXPECT_EQ(advice.action, AdvisoryAction::none) << advice.recommendation;
+  EXPECT_EQ(advice.reasons, last_of(recorded).reasons);
+  EXPECT_EQ(advice.header.pst_id, (TestCase{.month = 66}.pst_id()));
+  for (std::size_t death = made_up.size(); death < inputs.size(); death += 5)
+    EXPECT_EQ(of_kind<Advisory>(run(inputs, death)).back(), advice) << death;
+}
+
 }  // namespace
 }  // namespace sealwatch::advisory_generation

@@ -48,6 +48,21 @@ class Chain {
     take(made.window);
     return take(made.features);
   }
+  /// By the virtual bench.
+  HealthReport made_up_test(int number, const Condition& condition) {
+    Circumstances circumstances;
+    circumstances.number = number;
+    circumstances.asset_id = kAsset;
+    synthetic::Test made = synthetic::make(condition, circumstances);
+    for (Header* const header : {&made.window.header, &made.features.header}) {
+      header->pst_id += kEndOfMadeUpId;
+      header->message_id += kEndOfMadeUpId;
+    }
+    take_in_health(made.window);
+    take_in_health(made.features);
+    take(made.window);
+    return take(made.features);
+  }
   HealthReport retract(const std::string& pst_id, int month) { return say(kTestRetracted, pst_id, month); }
   HealthReport say(std::string_view kind, const std::string& what, int month,
                    const std::vector<std::string>& tests = {}) {
@@ -266,6 +281,21 @@ TEST(HealthAfterRetraction, AnAnalysisOfARetractedTestIsMadeAnewWithoutIt) {
   ASSERT_EQ(chain.analyses().size(), 2U);
   EXPECT_EQ(chain.analyses()[1].version, 2);
   for (const std::string& pst_id : chain.analyses()[1].fit_tests) EXPECT_NE(pst_id, wrong);
+}
+
+TEST(HealthAfterRetraction, MadeUpTestsAreForgottenOnceOneIsRecorded) {
+  for (const bool restarted : {false, true}) {
+    Chain tried, undisturbed;
+    Condition worn;
+    worn.friction_N = 3600;
+    for (int number = 0; number < 12; ++number) tried.made_up_test(number, worn);
+    for (int number = 20; number < 30; ++number) {
+      ASSERT_EQ(to_json(Message(tried.test(number)), JsonForm::exact),
+                to_json(Message(undisturbed.test(number)), JsonForm::exact))
+          << number;
+      if (restarted) tried.restart_health();
+    }
+  }
 }
 
 }  // namespace

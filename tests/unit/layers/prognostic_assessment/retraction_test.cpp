@@ -161,5 +161,22 @@ TEST_F(RetractionTest, DeathAnywhereChangesNothing) {
   for (std::size_t death = 0; death < inputs.size(); ++death) ASSERT_EQ(run(inputs, death), undisturbed) << death;
 }
 
+/// Somebody tried the chain with the virtual bench before the actuator was recorded, with a clock of its own.
+TEST_F(RetractionTest, MadeUpTestsAreForgottenOnceOneIsRecorded) {
+  auto tried = straight_life(1, 40);
+  for (TestCase& one : tried) one.month += 30.0, one.condition -= 0.1;
+  std::vector<Message> inputs = inputs_of(tried);
+  for (Message& message : inputs) {
+    header_of(message).pst_id += kEndOfMadeUpId;
+    header_of(message).message_id += kEndOfMadeUpId;
+  }
+  const auto recorded = inputs_of(straight_life(1, 40));
+  inputs.insert(inputs.end(), recorded.begin(), recorded.end());
+  expect_same_forecast(last_of(inputs), last_of(recorded));
+  EXPECT_EQ(of_kind<PstRequest>(run(inputs)).back().header.pst_id, (TestCase{.month = 40}.pst_id()));
+  for (const std::size_t death : {std::size_t{60}, std::size_t{85}, std::size_t{100}})
+    EXPECT_EQ(of_kind<RemainingLife>(run(inputs, death)).back(), last_of(inputs)) << death;
+}
+
 }  // namespace
 }  // namespace sealwatch::prognostic_assessment

@@ -40,6 +40,19 @@ class Detection {
     take(made.window);
     return take(made.features);
   }
+  /// By the virtual bench.
+  StateReport made_up_test(int number, const Condition& condition = {}) {
+    Circumstances circumstances;
+    circumstances.number = number;
+    circumstances.asset_id = kAsset;
+    synthetic::Test made = synthetic::make(condition, circumstances);
+    for (Header* const header : {&made.window.header, &made.features.header}) {
+      header->pst_id += kEndOfMadeUpId;
+      header->message_id += kEndOfMadeUpId;
+    }
+    take(made.window);
+    return take(made.features);
+  }
   StateReport say(std::string_view kind, const std::string& what, int month,
                   const std::optional<std::vector<std::string>>& tests = {}) {
     MaintenanceEvent event;
@@ -237,6 +250,23 @@ TEST(Retraction, AReplacementThatWasNoneIsUndone) {
       for (const int end = number + 8; number < end; ++number)
         ASSERT_EQ(text(changed.test(number)), text(undisturbed.test(number))) << number;
     }
+  }
+}
+
+/// Somebody tried the chain with the virtual bench before the actuator was recorded.
+TEST(Retraction, MadeUpTestsTeachNothingOnceOneIsRecorded) {
+  for (const bool restarted : {false, true}) {
+    Detection tried, undisturbed;
+    for (int number = 0; number < 12; ++number) tried.made_up_test(number + 30, stiff());
+    for (int number = 0; number < 16; ++number) {
+      ASSERT_EQ(text(tried.test(number)), text(undisturbed.test(number))) << number;
+      if (number == 8) tried.made_up_test(50, stiff());
+      if (restarted) tried.restart();
+    }
+    const auto overdue = tried.tick(synthetic::month(17, 20));
+    const auto never = undisturbed.tick(synthetic::month(17, 20));
+    ASSERT_TRUE(overdue && never);
+    EXPECT_EQ(text(*overdue), text(*never)) << "the last test is a recorded one";
   }
 }
 

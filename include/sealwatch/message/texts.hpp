@@ -1,6 +1,8 @@
 // Every text in a message, by its field's name, however deep: for rules that hold for all of them.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -25,9 +27,10 @@ void for_each_text(std::string_view name, Value& value, const Take& take) {
   }
 }
 
-/// Whether the field holds a name that others refer to, not free words: "pst_id", "source_ids".
+/// Whether the field holds a name that others refer to, not free words: "pst_id", "source_ids", a channel's name and unit.
 [[nodiscard]] inline bool names_something(std::string_view field) {
-  return field.ends_with("_id") || field.ends_with("_ids");
+  constexpr std::array<std::string_view, 4> kNames = {"name", "unit", "channel", "test_kind"};
+  return field.ends_with("_id") || field.ends_with("_ids") || std::ranges::find(kNames, field) != kNames.end();
 }
 
 }  // namespace sealwatch

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "sealwatch/core/visible_text.hpp"
 #include "services/common/recording/cells.hpp"
 #include "services/common/recording/columns.hpp"
 #include "services/common/recording/csv_rows.hpp"
@@ -368,7 +369,7 @@ std::string time_format_of(const std::vector<std::string>& cells) {
 }
 
 std::string as_utf8(std::string_view text) {
-  if (is_utf8(text)) return std::string(text);
+  if (is_utf8(text)) return visible(text);
   std::string out;
   for (const char letter : text) {
     const auto byte = static_cast<unsigned char>(letter);
@@ -379,7 +380,7 @@ std::string as_utf8(std::string_view text) {
       out += static_cast<char>(0x80U | (byte & 0x3FU));
     }
   }
-  return out;
+  return visible(out);
 }
 
 }  // namespace sealwatch

@@ -42,7 +42,7 @@ struct NameAndUnitText {
 /// How a time column counts, from some of its cells: "iso8601", a pattern of strptime; "" where they are numbers.
 [[nodiscard]] std::string time_format_of(const std::vector<std::string>& cells);
 
-/// Text of Windows' Western code page as UTF-8; UTF-8 as it is.
+/// Text of Windows' Western code page as UTF-8, UTF-8 as it is; what a terminal would obey, or nobody sees, as "\xHH".
 [[nodiscard]] std::string as_utf8(std::string_view text);
 
 }  // namespace sealwatch

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "sealwatch/core/visible_text.hpp"
 #include "services/common/recording/cells.hpp"
 #include "services/common/recording/log_columns.hpp"
 #include "services/common/recording/mat_container.hpp"
@@ -99,15 +100,16 @@ bool says_nothing(const std::string& name) {
 std::vector<OfferedColumn> offered_vectors(const std::vector<MatVariable>& vectors, const ChannelMap& map) {
   const auto last_part = [](const std::string& path) { return path.substr(path.rfind('/') + 1); };
   std::map<std::string, int> uses;
-  for (const MatVariable& vector : vectors) ++uses[last_part(vector.name)];
+  for (const MatVariable& vector : vectors) ++uses[last_part(visible(vector.name))];
   std::vector<OfferedColumn> offered;
   for (const MatVariable& vector : vectors) {
-    const std::string last = last_part(vector.name);
-    const auto is_named = [&](const std::string& name) {
-      return std::ranges::any_of(map.columns, [&](const auto& entry) { return entry.second.column == name; });
+    const std::string name = visible(vector.name);
+    const std::string last = last_part(name);
+    const auto is_named = [&](const std::string& one) {
+      return std::ranges::any_of(map.columns, [&](const auto& entry) { return entry.second.column == one; });
     };
-    const bool whole = uses[last] > 1 || is_named(vector.name) || (says_nothing(last) && !is_named(last));
-    offered.push_back({whole ? vector.name : last, vector.unit});
+    const bool whole = uses[last] > 1 || is_named(name) || (says_nothing(last) && !is_named(last));
+    offered.push_back({whole ? name : last, visible(vector.unit)});
   }
   return offered;
 }

@@ -94,6 +94,20 @@ TEST_F(ForeignLog, TabsAndLatin1AndUnitsInTheHeader) {
            map));
 }
 
+/// Names of a log stand on terminals, pages and in maps.
+TEST_F(ForeignLog, NoTerminalObeysItsNamesAndUnits) {
+  const auto layout = find_layout(
+      "t,Weg\x1b]0;owned\x07,p [bar\u202e],Wert\xff\x9b"
+      "31m\n0,1,2,3\n1,2,3,4\n2,3,4,5\n",
+      {});
+  ASSERT_TRUE(layout) << layout.error().describe();
+  EXPECT_THAT(layout->header,
+              ElementsAre("t", "Weg\\x1B]0;owned\\x07", "p [bar\\xE2\\x80\\xAE]", "Wert\u00ff\\xC2\\x9B31m"));
+  const auto units = find_layout("t,Weg\ns,mm\x1b[31m\n0,1\n1,2\n2,3\n", {});
+  ASSERT_TRUE(units) << units.error().describe();
+  for (const std::string& unit : units->units) EXPECT_EQ(unit.find('\x1b'), std::string::npos) << unit;
+}
+
 ChannelMap plain_map(const std::string& time, const std::string& pressure, const std::string& position) {
   return map_of({{"time", {.column = "t", .unit = time}},
                  {"pressure_a", {.column = "P1", .unit = pressure}},

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "services/common/recording/recording_file.hpp"
+#include "services/common/recording/vector_file.hpp"
 #include "tests/unit/recording/plant.hpp"
 
 namespace sealwatch {
@@ -257,6 +258,16 @@ TEST_P(MatlabStructs, SimulinksStructureWithTime) {
   EXPECT_THAT(recording->samples.find("motor_voltage")->values, ElementsAre(1.0, 2.0, 4.0, 8.0));
   EXPECT_THAT(recording->samples.find("position")->values,
               ElementsAre(DoubleEq(0.060), DoubleEq(0.059), DoubleEq(0.057), DoubleEq(0.053)));
+}
+
+TEST(OfferedVectors, HaveNamesAndUnitsThatNoTerminalObeys) {
+  MatVariable vector;
+  vector.name = "run/x\x1b[31m";
+  vector.unit = "mm\x07";
+  const auto offered = offered_vectors({vector}, {});
+  ASSERT_EQ(offered.size(), 1U);
+  EXPECT_EQ(offered[0].text, "x\\x1B[31m");
+  EXPECT_EQ(offered[0].unit, "mm\\x07");
 }
 
 TEST_P(MatlabStructs, TextIsNoChannelAndNamed) {

@@ -200,6 +200,15 @@ TEST(AdmissionOfTexts, AnIdIsOneVisibleLineAndAllTextIsUtf8) {
   raw = live_test("2031-04-10T00:00:00Z");
   raw.header.source_ids = {"good", "bad\x07"};
   EXPECT_THAT(refusal(raw), HasSubstr("its source_ids, 'bad\\x07', has"));
+  raw = live_test("2031-04-10T00:00:00Z");
+  raw.samples.channels = {{"flow\x1b[31m", "m3/s", 0.0, {}}};
+  EXPECT_THAT(refusal(raw), HasSubstr("its name, 'flow\\x1B[31m', has"));
+  raw.samples.channels = {{"flow", "m3/s\u202e", 0.0, {}}};
+  EXPECT_THAT(refusal(raw), HasSubstr("its unit, 'm3/s\\xE2\\x80\\xAE', has"));
+  raw.samples.channels = {{"flow", "m3/s", 0.0, {}}};
+  EXPECT_EQ(refusal(raw), "");
+  raw.test_kind = "pst\n";
+  EXPECT_THAT(refusal(raw), HasSubstr("test_kind"));
   Acknowledgement seen;
   seen.advisory_id = "recommendation/XT03";
   seen.remark = "two\nlines";

@@ -8,6 +8,7 @@
 #include "services/common/text/format.hpp"
 #include "services/common/text/words.hpp"
 #include "services/data_manipulation/alignment_check.hpp"
+#include "services/data_manipulation/refused_tests.hpp"
 #include "services/data_manipulation/window.hpp"
 
 namespace sealwatch {
@@ -120,7 +121,7 @@ TestConclusion conclude_test(const std::vector<SampleBlock>& blocks, const Asset
          rows == 0 ? "no sample was recorded"
                    : "only " + std::to_string(rows) + (rows == 1 ? " sample was" : " samples were") + " recorded");
   else if (const auto beyond = beyond_window(recorded))
-    note(window.abort_reason, "refused: " + *beyond);
+    note(window.abort_reason, kRefused + *beyond);
   else
     cut_window(recorded, asset, options, window);
 

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "sealwatch/signal/features.hpp"
+#include "services/data_manipulation/refused_tests.hpp"
 #include "tests/unit/layers/contract.hpp"
 #include "tests/unit/signal/synthetic_pst.hpp"
 
@@ -422,6 +423,38 @@ TEST(DataManipulation, ATestBeyondALimitIsRefusedByName) {
   EXPECT_THAT(conclude(at_times(picoseconds)).window.abort_reason,
               HasSubstr("refused: rows 5e-12 s apart, closer than the 1e-05 s"));
   EXPECT_THAT(conclude(at_times(few_of_many)).window.abort_reason, HasSubstr("rows would stand for the 1000 recorded"));
+}
+
+/// Nobody looks for a test of which nothing is concluded: it is kept, and told of by name until one can be used.
+TEST(DataManipulation, ALiveTestThatIsRefusedIsAnAlarmUntilALaterOneIsTaken) {
+  RefusedTests refused;
+  std::vector<double> picoseconds, seconds;
+  for (int row = 0; row < 1000; ++row) {
+    picoseconds.push_back(5e-12 * row);
+    seconds.push_back(0.05 * row);
+  }
+  const auto alarms_after = [&](const std::vector<double>& time_s, int day, bool is_replay) {
+    auto blocks = blocks_of(at_times(time_s), "ID-" + std::to_string(day));
+    for (SampleBlock& block : blocks) {
+      block.header.replay = is_replay;
+      block.header.event_time_ns = day;
+      block.recording_id = "april-" + std::to_string(day);
+    }
+    return refused.look(conclude(blocks).features);
+  };
+  const auto standing = alarms_after(picoseconds, 2, false);
+  ASSERT_TRUE(standing);
+  ASSERT_EQ(standing->standing.size(), 1U);
+  EXPECT_EQ(standing->standing[0].kind, "refused_test");
+  EXPECT_EQ(standing->standing[0].asset_id, "XT03-MV2");
+  EXPECT_EQ(standing->standing[0].pst_id, "ID-2");
+  EXPECT_THAT(standing->standing[0].text,
+              HasSubstr("recording april-2 is refused: rows 5e-12 s apart, closer than the 1e-05 s"));
+  EXPECT_FALSE(alarms_after(seconds, 1, false)) << "an older one says nothing";
+  EXPECT_FALSE(alarms_after(seconds, 3, true)) << "played back, it says nothing";
+  const auto later = alarms_after(seconds, 4, false);
+  ASSERT_TRUE(later);
+  EXPECT_TRUE(later->standing.empty());
 }
 
 }  // namespace

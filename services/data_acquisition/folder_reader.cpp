@@ -26,14 +26,14 @@ std::vector<std::string> names_of(const std::vector<AssetConfig>& assets) {
 
 FolderReader::FolderReader(std::filesystem::path directory, std::vector<AssetConfig> assets,
                            RecordingsFolder::Report report, std::chrono::milliseconds between_looks,
-                           int looks_until_settled)
+                           int looks_until_settled, const RetentionConfig& kept)
     : assets_(names_of(assets)),
       report_(report),
       between_looks_(between_looks),
       looks_until_removed_(kPatience * looks_until_settled),
       folder_(
           std::move(directory), std::move(assets), [this](const RawSamples& first) { return is_concluded(first); },
-          std::move(report), looks_until_settled) {}
+          std::move(report), looks_until_settled, kept) {}
 
 FolderReader::~FolderReader() = default;
 

@@ -28,7 +28,8 @@ class FolderReader final : public LocalInputs {
  public:
   /// `report` is called by the reading thread and by whoever looks.
   FolderReader(std::filesystem::path directory, std::vector<AssetConfig> assets, RecordingsFolder::Report report,
-               std::chrono::milliseconds between_looks = std::chrono::seconds(1), int looks_until_settled = 10);
+               std::chrono::milliseconds between_looks = std::chrono::seconds(1), int looks_until_settled = 10,
+               const RetentionConfig& kept = {});
   ~FolderReader() override;
   FolderReader(const FolderReader&) = delete;
   FolderReader& operator=(const FolderReader&) = delete;

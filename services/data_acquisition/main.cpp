@@ -11,11 +11,14 @@ namespace {
 using namespace sealwatch;
 
 std::shared_ptr<LocalInputs> watch_folder(const Configuration& configuration) {
-  const std::string& directory = configuration.services.at("data_acquisition").recordings_directory;
-  if (directory.empty()) return nullptr;
-  return std::make_shared<FolderReader>(directory, configuration.assets, [](const Error& error) {
+  const ServiceConfig& service = configuration.services.at("data_acquisition");
+  if (service.recordings_directory.empty()) return nullptr;
+  const auto report = [](const Error& error) {
     log_event(LogLevel::error, "recording", {{"error", error.describe()}});
-  });
+  };
+  constexpr int kLooksUntilSettled = 10;
+  return std::make_shared<FolderReader>(service.recordings_directory, configuration.assets, report,
+                                        std::chrono::seconds(1), kLooksUntilSettled, service.recordings_retention);
 }
 
 }  // namespace

@@ -42,12 +42,13 @@ fs::path reason_beside(const fs::path& recording) {
 }  // namespace
 
 RecordingsFolder::RecordingsFolder(fs::path directory, std::vector<AssetConfig> assets, IsConcluded is_concluded,
-                                   Report report, int looks_until_settled)
+                                   Report report, int looks_until_settled, const RetentionConfig& kept)
     : directory_(std::move(directory)),
       assets_(std::move(assets)),
       is_concluded_(std::move(is_concluded)),
       report_(std::move(report)),
-      looks_until_settled_(looks_until_settled) {
+      looks_until_settled_(looks_until_settled),
+      old_(kept) {
   std::error_code error;
   fs::create_directories(directory_, error);
   if (error)
@@ -60,6 +61,7 @@ RecordingsFolder::RecordingsFolder(fs::path directory, std::vector<AssetConfig> 
 
 void RecordingsFolder::look() {
   put_away_concluded();
+  old_.look(directory_, std::chrono::system_clock::now(), std::chrono::steady_clock::now());
   rejected_.look(directory_);
   const std::vector<fs::path> there = recordings();
   std::erase_if(files_, [&](const auto& file) { return !std::ranges::binary_search(there, file.first); });

@@ -21,6 +21,7 @@
 #include "sealwatch/core/result.hpp"
 #include "sealwatch/message/topics.hpp"
 #include "services/data_acquisition/folder_alarms.hpp"
+#include "services/data_acquisition/old_recordings.hpp"
 
 namespace sealwatch {
 
@@ -30,7 +31,7 @@ class RecordingsFolder {
   using IsConcluded = std::function<bool(const RawSamples&)>;
   using Report = std::function<void(const Error&)>;
   RecordingsFolder(std::filesystem::path directory, std::vector<AssetConfig> assets, IsConcluded is_concluded,
-                   Report report, int looks_until_settled = 10);
+                   Report report, int looks_until_settled = 10, const RetentionConfig& kept = {});
 
   /// One look, about once a second: puts away what is done, and notes what may be read.
   void look();
@@ -85,6 +86,7 @@ class RecordingsFolder {
   std::int64_t unreadable_ns_ = 0;  ///< since when not
   std::string unreadable_;          ///< why not
   RejectedRecordings rejected_;
+  OldRecordings old_;
 };
 
 }  // namespace sealwatch

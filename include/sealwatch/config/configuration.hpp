@@ -28,10 +28,18 @@ struct LoggingConfig {
   std::int32_t rotated_files = 5;
 };
 
+/// For how long a service's journal keeps samples (sample_block, test_window) that all readers have, or a folder its
+/// files; conclusions stay for ever. 0: for ever, or however much.
+struct RetentionConfig {
+  double days = 0.0;
+  double megabytes = 0.0;  ///< of one journal or folder
+};
+
 struct ServiceConfig {
   bool enabled = true;
   std::string journal;               ///< SOCI connection string; default "sqlite3://<state_directory>/<service>.db"
   std::string recordings_directory;  ///< data_acquisition only: recordings dropped here are taken in; "" none
+  RetentionConfig recordings_retention = {};  ///< of those that were seen to, in each of done/ and rejected/
 };
 
 /// One of the forecasters that judge every history side by side; what the methods are: forecast/forecaster.hpp.
@@ -52,13 +60,6 @@ struct FleetConstants {
   double irregularity_std = 0.0;
   SEALWATCH_FIELDS(FleetConstants, initial_rate, initial_rate_std, steepening, steepening_std,
                    rate_steepening_correlation, irregularity_std)
-};
-
-/// For how long a service's journal keeps samples (sample_block, test_window) that all readers have; conclusions stay for
-/// ever. 0: for ever, or however much.
-struct RetentionConfig {
-  double days = 0.0;
-  double megabytes = 0.0;  ///< of one journal
 };
 
 struct Configuration {

@@ -59,6 +59,17 @@ void read_logging(YamlMap& root, LoggingConfig& logging) {
   map->finish();
 }
 
+/// Of less than a day a test could still be running.
+void read_retention(YamlMap& parent, const std::string& key, RetentionConfig& retention) {
+  constexpr NumberRule kDays{.min = 1.0, .words = "must be 1 or more; leave it out to keep samples for ever"};
+  constexpr NumberRule kMegabytes{.min = 10.0, .words = "must be 10 or more; leave it out for no bound"};
+  auto map = parent.map(key);
+  if (!map) return;
+  map->read("days", retention.days, kDays);
+  map->read("megabytes", retention.megabytes, kMegabytes);
+  map->finish();
+}
+
 void read_services(YamlMap& root, Configuration& configuration) {
   for (const std::string& service : service_names()) configuration.services[service];
   auto services = root.map("services");
@@ -71,7 +82,10 @@ void read_services(YamlMap& root, Configuration& configuration) {
     map->read("journal", config.journal);
     if (const Status known = Journal::check_kind(config.journal); !config.journal.empty() && !known)
       map->fault("journal", without_password(config.journal), known.error().rule, known.error().advice);
-    if (service == "data_acquisition") map->read("recordings_directory", config.recordings_directory);
+    if (service == "data_acquisition") {
+      map->read("recordings_directory", config.recordings_directory);
+      read_retention(*map, "recordings_retention", config.recordings_retention);
+    }
     read_service_options(service, *map, configuration);
     map->finish();
   }
@@ -101,17 +115,6 @@ void read_senders(YamlMap& root, Configuration& configuration) {
     else
       root.fault("senders", {}, "must be a list of names: the source_id of raw samples");
   }
-}
-
-/// Of less than a day a test could still be running.
-void read_retention(YamlMap& root, Configuration& configuration) {
-  constexpr NumberRule kDays{.min = 1.0, .words = "must be 1 or more; leave it out to keep samples for ever"};
-  constexpr NumberRule kMegabytes{.min = 10.0, .words = "must be 10 or more; leave it out for no bound"};
-  auto map = root.map("retention");
-  if (!map) return;
-  map->read("days", configuration.retention.days, kDays);
-  map->read("megabytes", configuration.retention.megabytes, kMegabytes);
-  map->finish();
 }
 
 /// What is done with whom the configuration does not name.
@@ -302,7 +305,7 @@ Checked<Configuration> load_configuration(const std::string& path, const Configu
   read_services(map, configuration);
   read_topics(map, configuration);
   read_senders(map, configuration);
-  read_retention(map, configuration);
+  read_retention(map, "retention", configuration.retention);
   read_unknown(map, "unknown_assets", configuration.refuses_unknown_assets);
   read_unknown(map, "unknown_writers", configuration.refuses_unknown_writers);
   read_operator_acts(map, configuration);

@@ -153,11 +153,16 @@ TEST(Configuration, KeepsSamplesForEverUnlessItSaysOtherwise) {
   ASSERT_TRUE(plain);
   EXPECT_EQ(plain->retention.days, 0.0);
   EXPECT_EQ(plain->retention.megabytes, 0.0);
-  const auto bounded =
-      load_configuration(place.write("sealwatch.yaml", "retention: {days: 400, megabytes: 20000}\n"), {});
+  const auto bounded = load_configuration(place.write("sealwatch.yaml",
+                                                      "retention: {days: 400, megabytes: 20000}\n"
+                                                      "services: {data_acquisition: {recordings_retention: {days: "
+                                                      "30, megabytes: 50}}}\n"),
+                                          {});
   ASSERT_TRUE(bounded);
   EXPECT_EQ(bounded->retention.days, 400.0);
   EXPECT_EQ(bounded->retention.megabytes, 20'000.0);
+  EXPECT_EQ(bounded->services.at("data_acquisition").recordings_retention.days, 30.0);
+  EXPECT_EQ(bounded->services.at("data_acquisition").recordings_retention.megabytes, 50.0);
 }
 
 TEST(Configuration, SaysWhatIsDoneWithWhomItDoesNotName) {

@@ -495,5 +495,88 @@ TEST_F(FolderReaderTest, SaysWhenThereIsSomethingToTake) {
 
 TEST_F(FolderReaderTest, OneThatNeverLookedStopsAtOnce) { EXPECT_TRUE(reader().stop(std::chrono::milliseconds(0))); }
 
+/// What is seen to is kept for so long, and no more than so much; nothing else is touched.
+class OldRecordingsTest : public RecordingsFolderTest {
+ protected:
+  OldRecordingsTest() {
+    for (const char* const folder : {"done/below", "rejected"}) fs::create_directories(directory_ / folder);
+  }
+  void put(const std::string& name, std::size_t bytes = 100) {
+    std::ofstream(directory_ / name) << std::string(bytes, 'x');
+  }
+  void look(const RetentionConfig& kept, double days, double clock_days = 0.0) {
+    const auto later = [](double count) {
+      return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(count * 86'400.0));
+    };
+    OldRecordings old(kept);
+    const auto now = std::chrono::system_clock::now();
+    const auto steady = std::chrono::steady_clock::now();
+    if (clock_days != 0.0) old.look(directory_, now, steady);
+    old.look(directory_, now + later(days + clock_days), steady + later(days));
+  }
+};
+
+TEST_F(OldRecordingsTest, AreRemovedWithAllThatBelongsToThem) {
+  for (const char* const name : {"done/april.csv", "done/april.yaml", "done/april.2.csv", "done/below/may.csv",
+                                 "rejected/june.csv", "rejected/june.csv.error.txt", "new.csv"})
+    put(name);
+  look({.days = 30.0}, 29.0);
+  EXPECT_EQ(files().size(), 7U);
+  look({}, 10'000.0);
+  EXPECT_EQ(files().size(), 7U) << "for ever, where nothing else is said";
+  look({.days = 30.0}, 31.0);
+  EXPECT_EQ(files(), (std::set<std::string>{"done/below/may.csv", "new.csv"}));
+}
+
+TEST_F(OldRecordingsTest, GoTheOldestFirstWhereThereIsTooMuch) {
+  for (const char* const name : {"done/b.csv", "done/a.csv", "done/c.csv"}) {
+    put(name, 4'000'000);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // told apart by the second
+  }
+  look({.megabytes = 10.0}, 0.0);
+  EXPECT_EQ(files(), (std::set<std::string>{"done/a.csv", "done/c.csv"}));
+}
+
+TEST_F(OldRecordingsTest, AreOldByNoClockThatWasSet) {
+  put("done/april.csv");
+  look({.days = 30.0}, 1.0, 400.0);
+  EXPECT_EQ(files().size(), 1U);
+}
+
+/// Whoever may write into the folder could have this service remove what only it may remove.
+TEST_F(OldRecordingsTest, AreNeverReachedThroughALink) {
+  const fs::path elsewhere = directory_.string() + "_elsewhere";
+  fs::create_directories(elsewhere);
+  std::ofstream(elsewhere / "precious.csv") << "x";
+  fs::remove_all(directory_ / "done");
+  fs::create_directory_symlink(elsewhere, directory_ / "done");
+  fs::create_symlink(elsewhere / "precious.csv", directory_ / "rejected/link.csv");
+  look({.days = 1.0, .megabytes = 10.0}, 100.0);
+  EXPECT_TRUE(fs::exists(elsewhere / "precious.csv"));
+  EXPECT_TRUE(fs::is_symlink(directory_ / "rejected/link.csv"));
+  fs::remove_all(elsewhere);
+}
+
+/// A folder that is swapped for a link, and files that come and go meanwhile.
+TEST_F(OldRecordingsTest, AreNotReachedThroughALinkThatComesMeanwhile) {
+  const fs::path elsewhere = directory_.string() + "_elsewhere";
+  fs::create_directories(elsewhere);
+  for (int k = 0; k < 50; ++k) std::ofstream(elsewhere / (std::to_string(k) + ".csv")) << "x";
+  std::jthread stranger([&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      std::error_code ignored;
+      fs::rename(directory_ / "done", directory_ / "was", ignored);
+      fs::create_directory_symlink(elsewhere, directory_ / "done", ignored);
+      fs::remove(directory_ / "done", ignored);
+      fs::rename(directory_ / "was", directory_ / "done", ignored);
+    }
+  });
+  for (int round = 0; round < 200; ++round) look({.days = 1.0}, 100.0);
+  stranger.request_stop();
+  stranger.join();
+  EXPECT_EQ(std::distance(fs::directory_iterator(elsewhere), {}), 50);
+  fs::remove_all(elsewhere);
+}
+
 }  // namespace
 }  // namespace sealwatch

@@ -23,6 +23,7 @@ test_packages=(
   libsundials-dev python3-scipy                    # independent solvers to compare with
   clang clang-format clang-tidy libclang-rt-14-dev # fuzzing, formatting, linting
   sqlite3 man-db dpkg-dev file                     # what tests look with, and what cpack packs with
+  postgresql-15                                    # a server of the tests' own
   doxygen                                          # API reference of the public headers
 )
 

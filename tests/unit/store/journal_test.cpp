@@ -1,4 +1,4 @@
-// The journal's contract, on SQLite and, where SEALWATCH_TEST_POSTGRESQL holds a connection string, on PostgreSQL.
+// The journal's contract, on SQLite and, where there is one (place.hpp), on PostgreSQL.
 #include "services/common/store/journal.hpp"
 
 #include <gmock/gmock.h>

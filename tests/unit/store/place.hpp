@@ -1,5 +1,5 @@
 // Where a test keeps its journal: a fresh directory, or a fresh schema of the PostgreSQL server that
-// SEALWATCH_TEST_POSTGRESQL names ("host=127.0.0.1 dbname=test user=test").
+// SEALWATCH_TEST_POSTGRESQL names ("host=127.0.0.1 dbname=test user=test"), else of one of the test's own.
 #pragma once
 
 #include <soci/soci.h>
@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+
+#include "tests/unit/store/postgres_server.hpp"
 
 namespace sealwatch {
 
@@ -38,7 +40,7 @@ class Place {
 
   [[nodiscard]] bool usable() const { return backend_ == "sqlite3" || !server().empty(); }
   [[nodiscard]] static std::string why_not() {
-    return "set SEALWATCH_TEST_POSTGRESQL to a connection string to test on PostgreSQL";
+    return "install postgresql, or set SEALWATCH_TEST_POSTGRESQL to a connection string, to test on PostgreSQL";
   }
   /// In memory where that is possible: these tests are about what is written, not about the disk.
   [[nodiscard]] std::filesystem::path directory() const {
@@ -54,7 +56,7 @@ class Place {
  private:
   static std::string server() {
     const char* text = std::getenv("SEALWATCH_TEST_POSTGRESQL");
-    return text == nullptr ? "" : text;
+    return text == nullptr ? PostgresServer::connection() : text;
   }
   std::string backend_;
   std::string name_;

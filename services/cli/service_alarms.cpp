@@ -16,36 +16,33 @@ constexpr std::string_view kNoHeartbeat = "no_heartbeat";
 
 struct Row {
   std::string_view kind;
-  Ne107 category;
   std::string_view meaning;
 };
-/// Failure: something is not concluded from. Function check: what is concluded may not be what is meant for use. Out of
-/// specification: something goes on that the configuration does not foresee. Maintenance required: all is still seen,
-/// and will not be for ever.
-constexpr std::array kTable = {
-    Row{kNoHeartbeat, Ne107::failure, "is not heard"},
-    Row{"set_aside", Ne107::failure, "set aside after two failures"},
-    Row{"rival", Ne107::out_of_specification, "not alone"},
-    Row{"clock_step", Ne107::out_of_specification, "clock was set"},
-    Row{"clock_unsynchronised", Ne107::maintenance_required, "clock is not synchronised"},
-    Row{"future_test", Ne107::failure, "live tests change no advice"},
-    Row{"refused_test", Ne107::failure, "a test was refused"},
-    Row{"recording_not_taken", Ne107::failure, "a recording was not taken"},
-    Row{"sensor_lost", Ne107::failure, "sensor lost"},
-    Row{"awaits_confirmation", Ne107::maintenance_required, "an act waits for a second person"},
-    Row{"unknown_writer", Ne107::out_of_specification, "messages from an unknown writer"},
-    Row{"flood", Ne107::out_of_specification, "messages dropped"},
-    Row{"missing_blocks", Ne107::failure, "samples do not come"},
-    Row{"unknown_asset", Ne107::out_of_specification, "messages about assets that are not configured"},
-    Row{"refused_right", Ne107::out_of_specification, "connection refused"},
-    Row{kAdviceAlarm, Ne107::maintenance_required, "asked for"},
-    Row{kOverdueAlarm, Ne107::maintenance_required, "a test is overdue"},
-    Row{kOutOfServiceAlarm, Ne107::function_check, "work in progress"},
+constexpr std::array kMeanings = {
+    Row{kNoHeartbeat, "is not heard"},
+    Row{"set_aside", "set aside after two failures"},
+    Row{"rival", "not alone"},
+    Row{"clock_step", "clock was set"},
+    Row{"clock_unsynchronised", "clock is not synchronised"},
+    Row{"future_test", "live tests change no advice"},
+    Row{"refused_test", "a test was refused"},
+    Row{"recording_not_taken", "a recording was not taken"},
+    Row{"sensor_lost", "sensor lost"},
+    Row{"awaits_confirmation", "an act waits for a second person"},
+    Row{"unknown_writer", "messages from an unknown writer"},
+    Row{"flood", "messages dropped"},
+    Row{"missing_blocks", "samples do not come"},
+    Row{"unknown_asset", "messages about assets that are not configured"},
+    Row{"refused_right", "connection refused"},
+    Row{kAdviceAlarm, "asked for"},
+    Row{kOverdueAlarm, "a test is overdue"},
+    Row{kOutOfServiceAlarm, "work in progress"},
 };
+static_assert(kMeanings.size() == kNe107.size());
 
 const Row* row_of(std::string_view kind) {
-  const auto found = std::ranges::find(kTable, kind, &Row::kind);
-  return found == kTable.end() ? nullptr : &*found;
+  const auto found = std::ranges::find(kMeanings, kind, &Row::kind);
+  return found == kMeanings.end() ? nullptr : &*found;
 }
 
 bool is_same(const ServiceAlarm& a, const ServiceAlarm& b) {
@@ -93,17 +90,6 @@ std::string command_for(const HeardAlarm& heard, UtcTime now) {
 }
 
 }  // namespace
-
-std::string_view words(Ne107 category) {
-  constexpr std::array<std::string_view, 5> kWords = {"good", "failure", "function check", "out of specification",
-                                                      "maintenance required"};
-  return kWords.at(static_cast<std::size_t>(category));
-}
-
-Ne107 category_of(std::string_view alarm_kind) {
-  const Row* const row = row_of(alarm_kind);
-  return row == nullptr ? Ne107::failure : row->category;
-}
 
 std::vector<HeardAlarm> alarms_of(const std::vector<ServicesHeard::Service>& services) {
   std::vector<AlarmEntry> entries;

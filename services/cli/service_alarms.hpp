@@ -8,17 +8,11 @@
 #include <vector>
 
 #include "sealwatch/core/time.hpp"
+#include "sealwatch/message/ne107.hpp"
 #include "sealwatch/message/service.hpp"
 #include "services/cli/services_heard.hpp"
 
 namespace sealwatch::cli {
-
-/// NAMUR NE 107 (2017), section 4: what a device says of itself.
-enum class Ne107 { good, failure, function_check, out_of_specification, maintenance_required };
-[[nodiscard]] std::string_view words(Ne107 category);
-
-/// The one table: category by kind of alarm (ServiceAlarm::kind, and "no_heartbeat" of a service that is not heard).
-[[nodiscard]] Ne107 category_of(std::string_view alarm_kind);
 
 struct HeardAlarm {
   std::string service;

@@ -43,6 +43,18 @@ for page in "${pages[@]}"; do
     grep -nE "^.{$((longest_line + 1)),}" || true)
 done
 
+# The category of NAMUR NE 107 of every kind of alarm is that of the code.
+value_of() { sed -nE "s/.*std::string_view $1 = \"([a-z_]+)\";.*/\1/p" include/sealwatch/message/alarm_state.hpp; }
+kinds=0
+while read -r kind category; do
+  [[ $kind != k[A-Z]* ]] || kind=$(value_of "$kind")
+  kinds=$((kinds + 1))
+  grep -qF "\`$kind\`" docs/reference/alarms.md || fault "docs/reference/alarms.md: \`$kind\` is missing"
+  grep -qE "^\| ${category//_/ } \|.*\`$kind\`" docs/advisories.md ||
+    fault "docs/advisories.md: NE 107, ${category//_/ }: \`$kind\` is missing"
+done < <(sed -nE 's/^ *Ne107Row\{"?([A-Za-z_]+)"?, Ne107::([a-z_]+)\},$/\1 \2/p' include/sealwatch/message/ne107.hpp)
+[ "$kinds" -gt 15 ] || fault "include/sealwatch/message/ne107.hpp: its table was not found"
+
 words=$(cat "${user_pages[@]}" | wc -w)
 behind=$(cat docs/{reference,records,decisions}/*.md | wc -w)
 [ $((words + behind)) -le $most_words ] || fault "the pages have $((words + behind)) words, $behind of them in reference, records and decisions, at most $most_words: shorten, or move rows to a .tsv beside a record"

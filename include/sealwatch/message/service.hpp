@@ -9,6 +9,9 @@
 
 namespace sealwatch {
 
+/// State of a service that works, and has not recalled the past of all its assets yet; else "running", "stopping".
+inline constexpr const char* kRestoring = "restoring";
+
 struct StreamPosition {
   std::string topic;
   std::string writer_id;
@@ -25,7 +28,8 @@ struct ServiceAlarm {
   std::string pst_id;    ///< "" where it is about no test
   std::string text;      ///< what happened
   std::int64_t since_ns = 0;
-  SEALWATCH_FIELDS(ServiceAlarm, kind, asset_id, subject, pst_id, text, since_ns)
+  std::string ne107 = {};  ///< in words, as ne107.hpp has them: "failure"
+  SEALWATCH_FIELDS(ServiceAlarm, kind, asset_id, subject, pst_id, text, since_ns, ne107)
   friend bool operator==(const ServiceAlarm&, const ServiceAlarm&) = default;
 };
 
@@ -65,8 +69,9 @@ struct ServiceStatus {
   std::uint64_t alarm_count = 0;     ///< all that stand
   std::vector<AlarmEntry> desk;      ///< of advisory_generation: all alarms with their states, the most pressing first
   std::uint64_t desk_count = 0;      ///< how many there are, told or not
+  std::string ne107;                 ///< the most pressing of all that stand here, or of `state`: "good"
   SEALWATCH_FIELDS(ServiceStatus, service, writer_id, version, started_ns, publishing_time_ns, process_id,
-                   pending_inputs, written, received, state, last_error, alarms, alarm_count, desk, desk_count)
+                   pending_inputs, written, received, state, last_error, alarms, alarm_count, desk, desk_count, ne107)
   friend bool operator==(const ServiceStatus&, const ServiceStatus&) = default;
 };
 

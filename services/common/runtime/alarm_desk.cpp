@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "services/common/runtime/heartbeat.hpp"
+#include "sealwatch/message/ne107.hpp"
 
 namespace sealwatch {
 namespace {
@@ -123,6 +123,7 @@ AlarmDesk::Entry& AlarmDesk::raise(const std::string& service, const ServiceAlar
   if (is_new || entry.kept.ended_ns != 0) {  // it may come again: then it is another occurrence, on the same shelf
     entry.kept.service = service;
     entry.kept.alarm = alarm;
+    entry.kept.alarm.ne107.clear();  // told anew, by its kind
     entry.kept.ended_ns = 0;
     entry.kept.acknowledged_by.clear();
     entry.kept.acknowledged_at_ns = 0;
@@ -370,6 +371,7 @@ std::string AlarmDesk::cause_of(const ServiceAlarm& alarm, UtcTime time) const {
 
 AlarmEntry AlarmDesk::as_told(const AlarmEntry& kept, UtcTime time) const {
   AlarmEntry told = kept;
+  told.alarm.ne107 = words(category_of(kept.alarm.kind));
   told.out_of_service_by = out_of_service_by(kept.alarm.asset_id);
   if (kept.ended_ns == 0) told.suppressed_by = cause_of(kept.alarm, time);
   return told;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sealwatch/message/ne107.hpp"
 #include "sealwatch/message/service.hpp"
 
 namespace sealwatch {
@@ -50,9 +51,14 @@ class Alarms {
   void tell(ServiceStatus& status) const {
     const std::size_t told = std::min(standing_.size(), kMostTold);
     status.alarms.clear();
-    for (std::size_t i = standing_.size() - told; i < standing_.size(); ++i)
+    for (std::size_t i = standing_.size() - told; i < standing_.size(); ++i) {
       status.alarms.push_back(standing_[i].alarm);
+      status.alarms.back().ne107 = words(category_of(standing_[i].alarm.kind));
+    }
     status.alarm_count = standing_.size();
+    Ne107 worst = status.state == kRestoring ? Ne107::function_check : Ne107::good;
+    for (const Standing& one : standing_) worst = worse(worst, category_of(one.alarm.kind));
+    status.ne107 = words(worst);
   }
 
  private:

@@ -14,9 +14,6 @@
 
 namespace sealwatch {
 
-/// State of a service that works, and has not recalled the past of all its assets yet; else "running", "stopping".
-inline constexpr const char* kRestoring = "restoring";
-
 class Heartbeat {
  public:
   struct Options {

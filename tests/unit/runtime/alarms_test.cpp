@@ -45,6 +45,33 @@ std::vector<std::string> names(const std::vector<StrangerWatch::Stranger>& stran
   return found;
 }
 
+/// A control system that knows no kind of alarm of sealwatch's knows these.
+TEST(Ne107, StandsInTheStatusOfEachServiceAndAlarm) {
+  Alarms alarms;
+  ServiceStatus status;
+  const auto worst = [&] { return alarms.tell(status), status.ne107; };
+  const auto raise = [&](const std::string& kind) {
+    alarms.raise({.kind = kind, .asset_id = {}, .subject = {}, .pst_id = {}, .text = {}, .since_ns = 0});
+  };
+  EXPECT_EQ(worst(), "good");
+  status.state = kRestoring;
+  EXPECT_EQ(worst(), "function check");
+  status.state = "running";
+  raise("clock_unsynchronised");
+  EXPECT_EQ(worst(), "maintenance required");
+  raise("flood");
+  EXPECT_EQ(worst(), "out of specification");
+  status.state = kRestoring;
+  EXPECT_EQ(worst(), "function check");
+  raise("sensor_lost");
+  EXPECT_EQ(worst(), "failure");
+  for (int k = 0; k < 40; ++k)
+    alarms.raise(
+        {.kind = "flood", .asset_id = {}, .subject = std::to_string(k), .pst_id = {}, .text = {}, .since_ns = 1});
+  EXPECT_EQ(worst(), "failure") << "also where the alarm itself finds no place";
+  for (const ServiceAlarm& one : status.alarms) EXPECT_EQ(one.ne107, "out of specification");
+}
+
 TEST(StrangerWatch, KnowsWhomAHeartbeatNamesBeforeOrSoonAfterTheMessage) {
   StrangerWatch watch({.services = {"data_manipulation"}});
   EXPECT_THAT(watch.hear(heartbeat("data_manipulation", "early"), seconds(0)), IsEmpty());

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "sealwatch/core/visible_text.hpp"
 #include "services/cli/commands.hpp"
@@ -18,6 +19,7 @@ struct Trail {
   std::string service;
   std::vector<AuditEntry> entries;
   std::optional<AuditBreak> broken;
+  bool has_anchors = true;  ///< of the others' records, all that it kept
 };
 
 /// None where a journal cannot be looked into, or there is none.
@@ -25,9 +27,11 @@ std::optional<std::vector<Trail>> read_trails(const AuditOptions& options) {
   const auto connections = journals_at_hand(options.state_directory, options.config);
   if (!connections) return std::nullopt;
   std::vector<AuditAnchor> heard;
+  std::set<std::string> without_anchors;
   for (const auto& [service, connection] : *connections) {
     const auto anchors = read_audit_anchors(connection, service);
-    if (anchors) heard.insert(heard.end(), anchors->begin(), anchors->end());
+    if (!anchors || !anchors->are_whole) without_anchors.insert(service);
+    if (anchors) heard.insert(heard.end(), anchors->heard.begin(), anchors->heard.end());
   }
   std::vector<Trail> trails;
   for (const auto& [service, connection] : *connections) {
@@ -38,7 +42,7 @@ std::optional<std::vector<Trail>> read_trails(const AuditOptions& options) {
     }
     auto broken = find_break(service, *entries);
     if (!broken) broken = find_cut(service, *entries, heard);
-    trails.push_back({service, std::move(*entries), std::move(broken)});
+    trails.push_back({service, std::move(*entries), std::move(broken), !without_anchors.contains(service)});
   }
   return trails;
 }
@@ -70,6 +74,9 @@ void print(const Trail& trail, const AuditOptions& options) {
   else
     std::printf("%s: %s, as they were written%s\n", trail.service.c_str(), count.c_str(),
                 trail.entries.empty() ? "" : ("; last hash " + trail.entries.back().hash).c_str());
+  if (!trail.has_anchors)
+    std::printf("%s: BROKEN: what it kept of the other services' last hashes was changed or removed\n",
+                trail.service.c_str());
 }
 
 nlohmann::ordered_json as_json(const Trail& trail, const AuditOptions& options) {
@@ -86,7 +93,7 @@ nlohmann::ordered_json as_json(const Trail& trail, const AuditOptions& options) 
                       {"outcome", entry.act.outcome},
                       {"hash", entry.hash}});
   nlohmann::ordered_json result = {{"service", trail.service},
-                                   {"whole", !trail.broken},
+                                   {"whole", !trail.broken && trail.has_anchors},
                                    {"last_hash", trail.entries.empty() ? "" : trail.entries.back().hash}};
   if (trail.broken) result["broken"] = {{"entry", trail.broken->sequence}, {"why", trail.broken->why}};
   result["acts"] = std::move(acts);
@@ -115,7 +122,8 @@ int run_audit(const AuditOptions& options) {
                    .value = options.contains,
                    .rule = "is in no record any more: its end was cut off",
                    .advice = "compare with a backup, and with 'act recorded' in the services' logs"});
-  const bool whole = std::ranges::none_of(*trails, [](const Trail& trail) { return trail.broken.has_value(); });
+  const bool whole =
+      std::ranges::none_of(*trails, [](const Trail& trail) { return trail.broken.has_value() || !trail.has_anchors; });
   return whole && !cut ? kOk : kAnswerIsNo;
 }
 

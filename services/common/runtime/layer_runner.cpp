@@ -157,6 +157,7 @@ Status LayerRunner::step(std::chrono::milliseconds timeout) {
     if (Status status = let_time_pass(); !status) return status;
     if (Status status = note_acts(); !status) return status;
     look_whether_assets_are_quiet();
+    if (Status status = end_waits(); !status) return status;
     if (Status status = publish_latest(); !status) return status;
     if (Status status = drop_old_samples(); !status) return status;
   }
@@ -262,10 +263,11 @@ std::optional<std::string> LayerRunner::refusal_of_content(const Message& messag
 
 std::optional<std::string> LayerRunner::refusal_of(const Message& message, const ActRecord* record) const {
   auto refused = record == nullptr ? refusal_of_content(message) : admission_.refusal_of_recorded(message);
-  if (!refused) refused = refusal_of_confirmation(message);
-  if (!refused) refused = refusal_of_waiting(message);
+  if (!refused) refused = refusal_of_confirmation(message, record);
   if (!refused && (record == nullptr || record->is_ahead)) refused = refusal_of_ahead(message);
-  return refused;
+  if (refused || record != nullptr) return refused;  // what a neighbour took was counted there
+  refused = refusal_of_waiting(message);
+  return refused ? refused : refusal_of_many(message);
 }
 
 Status LayerRunner::take(Message message, const ActRecord* record) {
@@ -291,6 +293,7 @@ Status LayerRunner::take(Message message, const ActRecord* record) {
   const auto id = identify_input(message);
   if (!id) return fail(id.error());
   if (!*id) {
+    if (record != nullptr) note_taken_elsewhere(*record, message);
     if (is_numbered(message)) renumbered_.push_back(std::move(message));
     return {};
   }
@@ -317,6 +320,7 @@ Status LayerRunner::take(Message message, const ActRecord* record) {
       return {};
     }
     const bool is_said_here = record == nullptr && is_an_act(message) && is_listened_to(message);
+    if (is_said_here) tell_of_many(message, *refused);
     if (is_said_here && !keeps_refused(message, *refused)) return {};
     if (may_be_fetched_later(message)) {
       (void)note_act(message, refused, InputState::consumed, record);
@@ -324,6 +328,7 @@ Status LayerRunner::take(Message message, const ActRecord* record) {
     }
   }
   if (!refused) admission_.note_asset(asset_of(message));
+  if (!refused && record == nullptr) count_act(message);
   const bool for_desk = is_for_desk(message, record != nullptr);
   if (for_desk && !refused) refused = record == nullptr ? tell_desk(message) : recall_at_desk(message);
   InputState state = is_set_aside(message) ? InputState::set_aside : InputState::open;
@@ -342,7 +347,10 @@ Status LayerRunner::take(Message message, const ActRecord* record) {
   const auto input = std::make_shared<const Message>(without_stamps(std::move(message)));
   taken_.push_back({input, stream, state});
   if (state == InputState::awaiting) await(input, clock_.now());
-  if (state == InputState::ahead && !for_desk) ++acts_ahead_[asset_id];
+  if (state == InputState::ahead && !for_desk) {
+    ++acts_ahead_[asset_id];
+    if (record == nullptr || record->is_ahead) said_ahead_[kept_id] = {asset_id, time_said(record)};
+  }
   if (state == InputState::consumed && !refused) confirm(*input);
   if (state != InputState::open) return {};
   if (admission_.note(*input, false)) heard_of_.insert(asset_id);

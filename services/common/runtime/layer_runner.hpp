@@ -33,11 +33,11 @@
 #include "services/common/runtime/alarms.hpp"
 #include "services/common/runtime/asset_lanes.hpp"
 #include "services/common/runtime/clock_watch.hpp"
+#include "services/common/runtime/daily_acts.hpp"
 #include "services/common/runtime/heartbeat.hpp"
 #include "services/common/runtime/latest_outputs.hpp"
 #include "services/common/runtime/outbox.hpp"
 #include "services/common/runtime/recalled_alarm_acts.hpp"
-#include "services/common/runtime/refused_acts.hpp"
 #include "services/common/runtime/resend_queue.hpp"
 #include "services/common/runtime/retention.hpp"
 #include "services/common/runtime/stranger_watch.hpp"
@@ -95,6 +95,8 @@ struct RunnerOptions {
   std::function<ClockReading()> read_clock = {};
   bool refuses_unknown_assets = false;    ///< takes `assets` alone
   bool acts_confirmed_by_second = false;  ///< see message/confirmation.hpp
+  /// An act waits so long for a second person, or for what it means to be known; by the wall clock, across restarts.
+  std::chrono::milliseconds longest_wait_of_act{3'600'000};
   StrangerWatch::Options strangers = {};
   std::chrono::milliseconds strangers_stand{3'600'000};         ///< how long an alarm of who is heard no more stands
   std::chrono::milliseconds refusals_stand{90LL * 86'400'000};  ///< an alarm of a sender that is refused no more
@@ -247,8 +249,11 @@ class LayerRunner {
 
   // What people say (layer_runner_acts.cpp).
   [[nodiscard]] Status restore_awaiting();
+  [[nodiscard]] Status restore_ahead();
   void await(std::shared_ptr<const Message> act, UtcTime since);
-  [[nodiscard]] std::optional<std::string> refusal_of_confirmation(const Message& message) const;
+  [[nodiscard]] std::ptrdiff_t waiting_acts(const std::string& asset_id) const;
+  [[nodiscard]] std::optional<std::string> refusal_of_confirmation(const Message& message,
+                                                                   const ActRecord* record) const;
   [[nodiscard]] std::optional<std::string> refusal_of_waiting(const Message& message) const;
   [[nodiscard]] bool waits_for_second(const Message& message) const;
   /// Writes down who said it, and what becomes of it: `state` for what no person said.
@@ -257,7 +262,8 @@ class LayerRunner {
   /// Notes that an act was refused; whether it is kept. Of the others the record says how many there are.
   [[nodiscard]] bool keeps_refused(const Message& act, const std::string& refused);
   [[nodiscard]] std::optional<std::string> refusal_of_ahead(const Message& message) const;
-  /// Whether an act is refused because what it means is not known here: where a neighbour knows it, it comes again.
+  /// Whether an act is refused because what it means is not known here, or as one of too many: where a neighbour takes
+  /// it, it comes again.
   [[nodiscard]] bool may_be_fetched_later(const Message& message) const;
   /// Gives layers the acts that were ahead of what they mean, as far as that is known now.
   [[nodiscard]] Status give_acts_ahead();
@@ -266,6 +272,20 @@ class LayerRunner {
   /// Gives the layer what this confirms, and forgets what it rejects.
   void confirm(const Message& message);
   [[nodiscard]] Status record_acts();
+  // How many of them there may be, and for how long they wait (layer_runner_bounds.cpp).
+  /// The sort of acts with which it counts towards those of a day; none where their number is bounded otherwise.
+  [[nodiscard]] std::optional<std::string> counted_as(const Message& act) const;
+  [[nodiscard]] std::optional<std::string> refusal_of_many(const Message& message) const;
+  /// Of an act that is taken as it was said here.
+  void count_act(const Message& act);
+  void tell_of_many(const Message& act, const std::string& refused);
+  [[nodiscard]] bool has_waited_too_long(UtcTime since) const;
+  /// A neighbour has taken an act that is ahead here: it waits for what it means, however long that takes.
+  void note_taken_elsewhere(const ActRecord& record, const Message& act);
+  /// About once a second.
+  [[nodiscard]] Status end_waits();
+  void give_up(const Message& act, const std::string& why);
+  [[nodiscard]] UtcTime time_said(const ActRecord* record) const;
   // What the services keep of it for each other (layer_runner_records.cpp).
   [[nodiscard]] bool keeps_acts() const;
   [[nodiscard]] bool is_listened_to(const Message& act) const;
@@ -303,6 +323,7 @@ class LayerRunner {
   void note_older_acts(const ServiceStatus& status);
   [[nodiscard]] std::optional<std::string> lost_for_ever() const;
   void hear_of_own_outputs(const ServiceStatus& status);
+  void tell_of_false_position(const ServiceStatus& status, const StreamPosition& read, std::uint64_t written);
   [[nodiscard]] std::optional<std::string> samples_lost_with(const std::string& other) const;
   [[nodiscard]] Status tell_of_journal(const std::string& reason, const std::optional<std::string>& lost);
   [[nodiscard]] bool reads_samples() const;
@@ -358,15 +379,26 @@ class LayerRunner {
   std::map<std::string, std::size_t> taken_ids_;
   std::vector<Message> renumbered_;  ///< known inputs that came under another number
   std::map<std::pair<Topic, std::string>, std::string> last_unnumbered_;  ///< of the running batch, by topic and asset
-  std::map<std::string, std::shared_ptr<const Message>> awaiting_;        ///< acts that wait for a second person, by id
+  struct Waiting {
+    std::shared_ptr<const Message> act;
+    UtcTime since;
+  };
+  std::map<std::string, Waiting> awaiting_;               ///< acts that wait for a second person, by id
   std::map<std::string, InputState> no_longer_awaiting_;  ///< ids of those whose wait is over, of this batch
   std::map<std::string, std::size_t> acts_ahead_;         ///< acts that wait for what they mean, by asset
   std::set<std::string> awaits_quiet_;  ///< of those assets, the ones with acts that were fetched back
   std::set<std::string> heard_of_;      ///< of those assets, the ones of which something new is known
-  RefusedActs refused_acts_;
-  std::vector<OperatorAct> acts_;  ///< of the running batch
-  std::vector<Message> records_;   ///< of the running batch: own act_records
-  bool waits_for_acts_ = false;    ///< the journal is new, and acts come before all else
+  struct Said {
+    std::string asset_id;
+    UtcTime since;
+  };
+  std::map<std::string, Said> said_ahead_;  ///< of those, by id, the ones that no neighbour has taken
+  std::vector<std::string> given_up_;       ///< ids of acts that have waited for too long, of this batch
+  DailyActs refused_acts_;
+  std::map<std::string, DailyActs> taken_acts_;  ///< by sort: asset and kind
+  std::vector<OperatorAct> acts_;                ///< of the running batch
+  std::vector<Message> records_;                 ///< of the running batch: own act_records
+  bool waits_for_acts_ = false;                  ///< the journal is new, and acts come before all else
   std::deque<std::pair<Message, std::chrono::steady_clock::time_point>> told_records_;  ///< not yet in line, since when
   std::vector<Message> said_meanwhile_;            ///< by people, to this service itself
   std::map<std::string, std::string> standing_;    ///< advisory_id of the advice that stands, by asset
@@ -381,7 +413,8 @@ class LayerRunner {
   std::string has_read_more_;                      ///< one that read messages of a journal before the own one
   std::optional<std::string> set_back_before_;     ///< one that read more than the own journal has written
   bool tells_of_set_back_ = false;
-  std::vector<LaneResult> results_;  ///< not yet in the journal
+  std::set<std::string> has_read_own_;  ///< services that have said so since the start, and no more than was written
+  std::vector<LaneResult> results_;     ///< not yet in the journal
   Outbox outbox_;
   std::map<Key, std::uint64_t> committed_;    ///< positions, as far as they are kept in the journal
   std::set<Key> kept_streams_;                ///< those

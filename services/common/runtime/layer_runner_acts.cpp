@@ -14,9 +14,10 @@ namespace {
 
 constexpr const char* kAwaitsConfirmation = "awaits_confirmation";
 constexpr const char* kAhead = "waits until what it means is known here";
-constexpr std::ptrdiff_t kMostAwaiting = 64;  ///< of an asset
-/// Of an asset: a service that is behind has not so many meant acts before it, and whoever sends more floods.
-constexpr std::size_t kMostAhead = 1000;
+constexpr const char* kFetchedBack = ", fetched back from ";
+constexpr std::ptrdiff_t kMostAwaiting = 8;  ///< of an asset
+/// Of an asset: who sends more floods. Those that a neighbour took are not counted: they come to mean something here.
+constexpr std::ptrdiff_t kMostAhead = 8;
 constexpr std::size_t kHashLength = 64;
 /// Of a second: who invents records invents many.
 constexpr std::size_t kMostNewAnchors = 16;
@@ -33,12 +34,19 @@ std::string plain(const std::string& who) {
   return name;
 }
 
-constexpr const char* kJournalLost = "the journal was lost and is made again from the neighbours' messages";
+/// Who has DDS Security knows that nobody else speaks in the other's name.
+constexpr const char* kOrForged = "; or somebody else sends heartbeats in its name";
+
+std::string journal_lost(const std::string& other) {
+  return "the journal was lost, as " + other +
+         " knows of one before it, and is made again from the neighbours' messages" + kOrForged;
+}
 
 std::string journal_set_back(const std::string& other) {
   return "the journal is older than what " + other +
          " has read of it: a restored copy, or its end was cut off; what is missing is made again from the "
-         "neighbours' messages";
+         "neighbours' messages" +
+         kOrForged;
 }
 
 /// What `other`, of an earlier version, has taken, and keeps for nobody.
@@ -73,37 +81,52 @@ Status LayerRunner::restore_awaiting() {
   const auto waiting = journal_.awaiting();
   if (!waiting) return fail(waiting.error());
   for (const Journal::Awaiting& one : *waiting) await(std::make_shared<const Message>(one.message), one.received);
-  auto ahead = journal_.acts_ahead();
+  return restore_ahead();
+}
+
+Status LayerRunner::restore_ahead() {
+  const auto ahead = journal_.acts_ahead();
   if (!ahead) return fail(ahead.error());
-  acts_ahead_ = std::move(*ahead);
-  for (const auto& [asset_id, count] : acts_ahead_) awaits_quiet_.insert(asset_id);
+  for (const Journal::Ahead& one : *ahead) {
+    ++acts_ahead_[one.asset_id];
+    awaits_quiet_.insert(one.asset_id);
+    said_ahead_[one.message_id] = {one.asset_id, one.received};
+  }
+  if (said_ahead_.empty()) return {};
+  const auto acts = journal_.acts();
+  if (!acts) return fail(acts.error());
+  for (const AuditEntry& entry : *acts)
+    if (entry.act.outcome.starts_with(std::string(kAhead) + kFetchedBack)) said_ahead_.erase(entry.act.subject);
   return {};
 }
 
 void LayerRunner::await(std::shared_ptr<const Message> act, UtcTime since) {
   const Header& header = header_of(*act);
   const auto told = act_of(*act, clock_.now(), {});
-  alarms_.raise({.kind = kAwaitsConfirmation,
-                 .asset_id = asset_of(*act),
-                 .subject = header.message_id,
-                 .pst_id = {},
-                 .text = told->kind + " by " + told->who + " counts once another person confirms it",
-                 .since_ns = since.nanoseconds});
-  awaiting_[header.message_id] = std::move(act);
+  // Of a lost journal all that nobody confirmed in time comes back, for as long.
+  if (waiting_acts(asset_of(*act)) < kMostAwaiting)
+    alarms_.raise({.kind = kAwaitsConfirmation,
+                   .asset_id = asset_of(*act),
+                   .subject = header.message_id,
+                   .pst_id = {},
+                   .text = told->kind + " by " + told->who + " counts once another person confirms it",
+                   .since_ns = since.nanoseconds});
+  awaiting_[header.message_id] = {std::move(act), since};
 }
 
 /// Why a confirmation confirms nothing; none for all other messages.
-std::optional<std::string> LayerRunner::refusal_of_confirmation(const Message& message) const {
+std::optional<std::string> LayerRunner::refusal_of_confirmation(const Message& message, const ActRecord* record) const {
   const auto act_id = act_confirmed_by(message);
   if (!act_id) return std::nullopt;
   const bool is_read_here = !act_id->starts_with("model_acceptance/") ||
                             std::ranges::find(kind_->inputs(), Topic::model_acceptance) != kind_->inputs().end();
   if (!is_read_here) return std::nullopt;
   const auto waiting = awaiting_.find(*act_id);
-  if (waiting == awaiting_.end() || asset_of(*waiting->second) != asset_of(message))
+  if (waiting == awaiting_.end() || asset_of(*waiting->second.act) != asset_of(message) ||
+      (record == nullptr && has_waited_too_long(waiting->second.since)))
     return "nothing of the id '" + *act_id + "' waits for a confirmation";
   if (plain(who_said(message)).empty()) return "it does not say who; give a name";
-  if (!rejects(message) && plain(who_said(message)) == plain(who_said(*waiting->second)))
+  if (!rejects(message) && plain(who_said(message)) == plain(who_said(*waiting->second.act)))
     return who_said(message) + " said so in the first place; it takes another person to confirm it";
   return std::nullopt;
 }
@@ -132,26 +155,32 @@ bool LayerRunner::waits_for_second(const Message& message) const {
   return options_.acts_confirmed_by_second && may_lower_an_advisory(message);
 }
 
+std::ptrdiff_t LayerRunner::waiting_acts(const std::string& asset_id) const {
+  return std::ranges::count_if(awaiting_, [&](const auto& one) { return asset_of(*one.second.act) == asset_id; });
+}
+
 /// Each waits in the journal, with an alarm of its own, and nothing is known of what it will mean.
 std::optional<std::string> LayerRunner::refusal_of_waiting(const Message& message) const {
   if (!waits_for_second(message)) return std::nullopt;
   const std::string asset_id = asset_of(message);
-  const auto of_asset =
-      std::ranges::count_if(awaiting_, [&](const auto& one) { return asset_of(*one.second) == asset_id; });
+  const std::ptrdiff_t of_asset = waiting_acts(asset_id);
   if (of_asset < kMostAwaiting) return std::nullopt;
   return std::to_string(of_asset) + " acts of asset " + asset_id +
          " wait for a second person already; confirm or reject those, and say it again";
 }
 
 std::optional<std::string> LayerRunner::refusal_of_ahead(const Message& message) const {
-  const auto ahead = acts_ahead_.find(asset_of(message));
-  if (ahead == acts_ahead_.end() || ahead->second < kMostAhead || !admission_.is_ahead(message)) return std::nullopt;
+  if (!admission_.is_ahead(message)) return std::nullopt;
+  const std::string asset_id = asset_of(message);
+  const auto ahead =
+      std::ranges::count_if(said_ahead_, [&](const auto& one) { return one.second.asset_id == asset_id; });
+  if (ahead < kMostAhead) return std::nullopt;
   return "it means no test, retraction or replacement that is known, and " + std::to_string(kMostAhead) +
-         " such ones of asset " + asset_of(message) + " wait already; find out who sends them";
+         " such ones of asset " + asset_id + " wait already; find out who sends them";
 }
 
 bool LayerRunner::may_be_fetched_later(const Message& message) const {
-  return admission_.refusal_of_idle(message) || refusal_of_ahead(message);
+  return admission_.refusal_of_idle(message) || refusal_of_ahead(message) || refusal_of_many(message);
 }
 
 InputState LayerRunner::note_act(const Message& message, const std::optional<std::string>& refused, InputState state,
@@ -162,7 +191,8 @@ InputState LayerRunner::note_act(const Message& message, const std::optional<std
   const bool is_ahead = waits_at_desk || (!refused && !waits && (admission_.is_ahead(message) || is_fetched_early));
   if (is_ahead && is_fetched_early) awaits_quiet_.insert(asset_of(message));
   std::string outcome = refused ? *refused : waits ? "waits for a second person" : is_ahead ? kAhead : kTaken;
-  if (record != nullptr) outcome += ", fetched back from " + visible(record->header.producer);
+  if (record != nullptr)
+    outcome += (is_ahead && record->is_ahead ? ", as it did at " : kFetchedBack) + visible(record->header.producer);
   if (auto act = act_of(message, clock_.now(), outcome)) acts_.push_back(std::move(*act));
   if (refused || act_confirmed_by(message)) return InputState::consumed;
   return waits ? InputState::awaiting : is_ahead ? InputState::ahead : state;
@@ -192,6 +222,7 @@ Status LayerRunner::give_acts_ahead(const std::string& asset_id) {
     if (auto taken = act_of(**act, clock_.now(), kTaken)) acts_.push_back(std::move(*taken));
     keep_record(**act, false);
     no_longer_awaiting_[act_id] = InputState::open;
+    said_ahead_.erase(act_id);
     if (--acts_ahead_[asset_id] == 0) acts_ahead_.erase(asset_id);
     give(std::make_shared<const Message>(std::move(**act)));
     heard_of_.insert(asset_id);  // what takes it back may wait for it
@@ -209,7 +240,7 @@ void LayerRunner::confirm(const Message& message) {
   const auto act_id = act_confirmed_by(message);
   const auto waiting = act_id ? awaiting_.find(*act_id) : awaiting_.end();
   if (waiting == awaiting_.end()) return;
-  const std::shared_ptr<const Message> act = waiting->second;
+  const std::shared_ptr<const Message> act = waiting->second.act;
   awaiting_.erase(waiting);
   alarms_.clear(kAwaitsConfirmation, asset_of(*act), *act_id);
   if (const auto taken = taken_ids_.find(*act_id); taken != taken_ids_.end())
@@ -290,17 +321,33 @@ bool LayerRunner::reads_samples() const {
 /// Others remember how far they read: further than this journal goes, or in one before it.
 void LayerRunner::hear_of_own_outputs(const ServiceStatus& status) {
   if (!strangers_.knows(status.writer_id)) return;
+  bool is_reader = false, is_beyond = false;
   for (const StreamPosition& read : status.received) {
     const auto topic = value_of<Topic>(read.topic);
     if (!topic || read.sequence == 0) continue;
     const bool is_own_kind = std::ranges::find(kind_->outputs(), *topic) != kind_->outputs().end();
     if (read.writer_id == journal_.writer_id()) {
-      const auto written = journal_.written().find(*topic);
-      if (written == journal_.written().end() || written->second < read.sequence) set_back_before_ = status.service;
+      const auto found = journal_.written().find(*topic);
+      const std::uint64_t written = found == journal_.written().end() ? 0 : found->second;
+      is_reader = true;
+      if (written >= read.sequence) continue;
+      if (has_read_own_.contains(status.service)) return tell_of_false_position(status, read, written);
+      is_beyond = true;
     } else if (is_new_ && is_own_kind) {
       has_read_more_ = status.service;
     }
   }
+  if (is_beyond) set_back_before_ = status.service;
+  if (is_reader && !is_beyond) has_read_own_.insert(status.service);
+}
+
+/// No journal is set back while its service runs (Journal::is_in_place).
+void LayerRunner::tell_of_false_position(const ServiceStatus& status, const StreamPosition& read,
+                                         std::uint64_t written) {
+  note_strangers({{"heartbeat of " + status.service,
+                   "it says that " + status.service + " has read number " + std::to_string(read.sequence) + " of " +
+                       read.topic + ", of which this service has written " + std::to_string(written) +
+                       ": its heartbeat is forged, or its journal is damaged"}});
 }
 
 /// Before the first heartbeat, which others compare with their own record where that is new.
@@ -346,8 +393,11 @@ Status LayerRunner::compare_acts() {
   if (!what && !all_heard()) return {};
   is_new_ = false;
   Status kept = in_batch([&] { return journal_.no_longer_new(); }, Survives::power_cuts);
+  const std::string& other = !has_read_more_.empty()    ? has_read_more_
+                             : !has_older_acts_.empty() ? has_older_acts_
+                                                        : has_unrecorded_acts_;
   const bool is_remade = what || !has_read_more_.empty();
-  return kept && is_remade ? tell_of_journal(kJournalLost, what) : kept;
+  return kept && is_remade ? tell_of_journal(journal_lost(other), what) : kept;
 }
 
 std::optional<std::string> LayerRunner::samples_lost_with(const std::string& other) const {
@@ -397,6 +447,8 @@ Status LayerRunner::record_acts() {
     if (Status recorded = record(act); !recorded) return recorded;
   for (const auto& [act_id, state] : std::exchange(no_longer_awaiting_, {}))
     if (Status ended = journal_.end_awaiting(act_id, state); !ended) return ended;
+  for (const std::string& act_id : std::exchange(given_up_, {}))
+    if (Status forgotten = journal_.forget_awaiting(act_id); !forgotten) return forgotten;
   return {};
 }
 

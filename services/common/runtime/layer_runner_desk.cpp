@@ -43,6 +43,7 @@ Status LayerRunner::restore_recalled_at_desk() {
       if (!act) return fail(act.error());
       if (!*act || !is_for_desk(**act, true)) continue;
       recalled_.add(std::move(**act));
+      said_ahead_.erase(act_id);
       --ahead->second;
     }
     if (ahead->second == 0) awaits_quiet_.erase(ahead->first);

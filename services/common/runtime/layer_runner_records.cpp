@@ -186,7 +186,8 @@ Status LayerRunner::take_record(Message message, const StreamPosition& stream) {
   }
   taken_ids_[record.header.message_id] = taken_.size();
   taken_.push_back({std::make_shared<const Message>(without_stamps(std::move(message))), stream, InputState::consumed});
-  const auto act = refused || stream.sequence == 0 ? std::nullopt : act_in(record);
+  const bool is_over = record.is_ahead && has_waited_too_long(time_said(&record));
+  const auto act = refused || is_over || stream.sequence == 0 ? std::nullopt : act_in(record);
   if (!act || asset_of(*act) != record.asset_id || header_of(*act).message_id.empty()) return {};
   if (desk_ || !is_for_desk(*act, true)) return take(without_stamps(*act), &record);
   // It may have heard the act itself, but not whether the desk took it: this says so.

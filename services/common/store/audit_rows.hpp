@@ -13,6 +13,11 @@ void make_acts_table(soci::session& sql);
 [[nodiscard]] std::vector<AuditEntry> acts_in(soci::session& sql);
 /// All anchors, service by service, in order. Throws what SOCI throws.
 [[nodiscard]] std::vector<AuditAnchor> anchors_in(soci::session& sql);
+/// Whether it was not there yet. Throws what SOCI throws.
+bool add_anchor(soci::session& sql, const AuditAnchor& heard);
+/// What table meta keeps of them: "NUMBER SUM", the sum that of checksum_of_anchor.
+[[nodiscard]] std::string sum_of(const std::vector<AuditAnchor>& anchors);
+[[nodiscard]] std::string with_anchor(const std::string& sum, const AuditAnchor& added);
 /// Between begin and commit. Returns the entry. Throws what SOCI throws.
 AuditEntry append_act(soci::session& sql, const std::string& service, const OperatorAct& act);
 

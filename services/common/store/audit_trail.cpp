@@ -3,12 +3,14 @@
 #include <openssl/evp.h>
 
 #include <array>
+#include <sstream>
 #include <stdexcept>
 
 #include "services/common/store/audit_rows.hpp"
 #include "services/common/store/connection_string.hpp"
-#include "services/common/store/journal.hpp"
+#include "services/common/store/database.hpp"
 #include "services/common/store/journal_reader.hpp"
+#include "services/common/store/row_checksum.hpp"
 
 namespace sealwatch {
 namespace {
@@ -181,8 +183,38 @@ std::vector<AuditAnchor> anchors_in(soci::session& sql) {
   return anchors;
 }
 
-Result<std::vector<AuditAnchor>> read_audit_anchors(const std::string& connection, const std::string& service) {
-  return look_into(connection, service, "anchors", [](soci::session& sql) { return anchors_in(sql); });
+bool add_anchor(soci::session& sql, const AuditAnchor& heard) {
+  const long long sequence = heard.sequence;
+  soci::statement insert =
+      (sql.prepare << "INSERT INTO anchors(service, sequence, hash) VALUES(:service, :sequence, :hash)"
+                      " ON CONFLICT(service, sequence, hash) DO NOTHING",
+       use(heard.service, "service"), use(sequence, "sequence"), use(heard.hash, "hash"));
+  insert.execute(true);
+  return insert.get_affected_rows() > 0;
+}
+
+std::string with_anchor(const std::string& sum, const AuditAnchor& added) {
+  std::uint64_t number = 0, total = 0;
+  std::istringstream(sum) >> number >> total;
+  total += checksum_of_anchor(added.service, added.sequence, added.hash);
+  return std::to_string(number + 1) + " " + std::to_string(total);
+}
+
+std::string sum_of(const std::vector<AuditAnchor>& anchors) {
+  std::string sum = "0 0";
+  for (const AuditAnchor& one : anchors) sum = with_anchor(sum, one);
+  return sum;
+}
+
+Result<AuditAnchors> read_audit_anchors(const std::string& connection, const std::string& service) {
+  return look_into(connection, service, "anchors", [](soci::session& sql) {
+    const soci::transaction one_moment(sql);  // a running service writes both
+    AuditAnchors found{.heard = anchors_in(sql)};
+    std::string sum;
+    sql << std::string("SELECT value FROM meta WHERE name = '") + kAnchorsSum + "'", into(sum);
+    found.are_whole = sum.empty() || sum == sum_of(found.heard);
+    return found;
+  });
 }
 
 }  // namespace sealwatch

@@ -63,9 +63,12 @@ inline constexpr const char* kActsTopic = "acts";
 [[nodiscard]] std::optional<AuditBreak> find_cut(const std::string& service, const std::vector<AuditEntry>& entries,
                                                  const std::vector<AuditAnchor>& heard);
 
+struct AuditAnchors {
+  std::vector<AuditAnchor> heard;
+  bool are_whole = true;  ///< as they were kept
+};
 /// What a service's journal, which may run, says of others' records.
-[[nodiscard]] Result<std::vector<AuditAnchor>> read_audit_anchors(const std::string& connection,
-                                                                  const std::string& service);
+[[nodiscard]] Result<AuditAnchors> read_audit_anchors(const std::string& connection, const std::string& service);
 /// The chain in a service's journal, which may run; it is not changed.
 [[nodiscard]] Result<std::vector<AuditEntry>> read_audit_trail(const std::string& connection,
                                                                const std::string& service);

@@ -73,6 +73,7 @@ void Journal::Database::connect(const std::string& connection) {
 }
 
 void Journal::Database::make_ready() {
+  if (!has_table("meta") && has_table("outputs")) throw std::runtime_error("malformed: table meta is not there");
   if (!has_table("meta")) create_schema();
   check_schema();
   make_later_tables();

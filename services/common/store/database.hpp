@@ -30,6 +30,9 @@ inline constexpr const char* kToBeMended = "to_be_mended";
 /// Table meta: that nobody has compared the journal with others' records of acts since it was made.
 inline constexpr const char* kNewJournal = "new";
 
+/// Table meta: number and sum of the checksums of anchors.
+inline constexpr const char* kAnchorsSum = "anchors";
+
 /// A journal that is not the one that belongs in its place.
 struct OtherJournal {
   std::string writer_id;
@@ -58,6 +61,7 @@ struct Journal::Database {
   long long inputs_looked_up = 0;
   std::optional<JournalLock> lock;  ///< SQLite's
   bool is_made = false;             ///< by this process
+  bool has_all_tables = false;      ///< or had them when it was last used
   long long committed = 0;          ///< outputs, as far as they are committed
   std::chrono::steady_clock::time_point remembered;
   long long last_used_ns = 0;  ///< by the wall clock, before it was opened
@@ -127,6 +131,8 @@ struct Journal::Database {
   void know_damaged_tests();
   void make_indexes_anew();
   void check_small_tables();
+  void mark_missing_outputs();
+  void check_anchors();
   // journal_check.cpp
   /// Looks whether the indexes find the next rows; false once all were looked at. Throws Error where one does not.
   bool check_indexes();

@@ -191,12 +191,19 @@ class Journal {
   };
   /// What waits for a second person, in the order of receipt.
   [[nodiscard]] Result<std::vector<Awaiting>> awaiting();
-  /// Of each asset with acts that are ahead, their number.
-  [[nodiscard]] Result<std::map<std::string, std::size_t>> acts_ahead();
+  struct Ahead {
+    std::string message_id;
+    std::string asset_id;
+    UtcTime received;
+  };
+  /// Acts that are ahead.
+  [[nodiscard]] Result<std::vector<Ahead>> acts_ahead();
   /// Ids of those of one asset, in the order of receipt.
   [[nodiscard]] Result<std::vector<std::string>> acts_ahead(const std::string& asset_id);
   /// Ends the wait of an act that is awaiting or ahead: open or consumed.
   [[nodiscard]] Status end_awaiting(const std::string& message_id, InputState state);
+  /// Forgets that such an act came: said again, it is another.
+  [[nodiscard]] Status forget_awaiting(const std::string& message_id);
 
   // The quarantine. It is written between begin and commit; askers write to it from other processes (quarantine_desk.hpp).
 

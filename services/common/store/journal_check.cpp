@@ -20,17 +20,18 @@ constexpr int kSome = 64;
 struct Indexed {
   std::optional<long long> last;
   std::optional<long long> missing;
+  long long rows = 0;
 };
 
 Indexed look_up(soci::session& sql, const std::string& number, const std::string& found, const std::string& rows,
                 long long after) {
+  Indexed indexed;
   long long last = 0, missing = 0;
   soci::indicator has_last = soci::i_null, has_missing = soci::i_null;
-  sql << "SELECT max(" + number + "), min(CASE WHEN " + found + " THEN NULL ELSE " + number + " END) FROM (" + rows +
-             " NOT INDEXED WHERE " + number + " > :after ORDER BY " + number + " LIMIT " + std::to_string(kSome) +
-             ") AS one",
-      use(after, "after"), into(last, has_last), into(missing, has_missing);
-  Indexed indexed;
+  sql << "SELECT count(*), max(" + number + "), min(CASE WHEN " + found + " THEN NULL ELSE " + number + " END) FROM (" +
+             rows + " NOT INDEXED WHERE " + number + " > :after ORDER BY " + number + " LIMIT " +
+             std::to_string(kSome) + ") AS one",
+      use(after, "after"), into(indexed.rows), into(last, has_last), into(missing, has_missing);
   if (has_last == soci::i_ok) indexed.last = last;
   if (has_missing == soci::i_ok) indexed.missing = missing;
   return indexed;
@@ -82,6 +83,8 @@ bool Journal::Database::check_indexes() {
   if (!is_file()) return false;
   const Indexed outputs = look_up_outputs(sql, outputs_looked_up);
   if (outputs.missing) must_be_mended(*outputs.missing, "an index does not find it");
+  if (outputs.last && *outputs.last - outputs_looked_up != outputs.rows)
+    must_be_mended(*outputs.last, "one before it is missing");
   outputs_looked_up = outputs.last.value_or(outputs_looked_up);
   const Indexed inputs = look_up_inputs(sql, inputs_looked_up);
   if (inputs.missing) must_be_mended(*inputs.missing, "an index of inputs does not find it");

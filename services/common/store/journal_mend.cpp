@@ -12,11 +12,13 @@
 // What cannot be made again is an alarm (quarantine, "damaged") until somebody has seen it. A consumed input is only an
 // id that prevents doubles; a record of acts shows by itself that it was changed.
 #include <chrono>
+#include <map>
 #include <stdexcept>
 #include <string_view>
 
 #include "sealwatch/message/outside.hpp"
 #include "services/common/message/json.hpp"
+#include "services/common/store/audit_rows.hpp"
 #include "services/common/store/database.hpp"
 #include "services/common/store/row_checksum.hpp"
 
@@ -126,6 +128,7 @@ void tell(soci::session& sql, const DamagedRow& row, const std::string& reason) 
 
 void Journal::Database::mend() {
   check_small_tables();
+  check_anchors();
   soci::transaction transaction(sql);
   const bool all = !meta(kToBeMended).empty();
   if (all) make_indexes_anew();
@@ -133,6 +136,7 @@ void Journal::Database::mend() {
   mend_quarantine();
   mend_inputs();
   mend_outputs(all);
+  if (all) mark_missing_outputs();
   sql << std::string("DELETE FROM meta WHERE name = '") + kToBeMended + "'";
   transaction.commit();
   know_damaged_tests();
@@ -155,6 +159,18 @@ void Journal::Database::check_small_tables() {
   int some = 0;
   sql << "SELECT count(*) FROM (SELECT 1 FROM inputs INDEXED BY inputs_of_no_stream WHERE sequence = 0 LIMIT 1)",
       into(some);
+}
+
+/// Without them a record of acts that is cut looks whole. A journal of an earlier version has no sum.
+void Journal::Database::check_anchors() {
+  const std::string there = sum_of(anchors_in(sql));
+  const std::string known = meta(kAnchorsSum);
+  if (known == there) return;
+  if (!known.empty())
+    tell_of_journal(
+        "what other services said of their records of acts was changed or removed, table anchors: compare "
+        "their last hashes (sealwatch audit) with those that you noted");
+  set_meta(kAnchorsSum, there);
 }
 
 // What an index left out may have been written again: then two rows have one id, and no index of them can be made. Such a
@@ -251,6 +267,44 @@ void Journal::Database::mend_outputs(bool all) {
       fetch_again(one.topic, one.writer_id, one.sequence);
     }
   }
+}
+
+/// The numbers of conclusions, and those in each stream, have no gaps: what somebody removed leaves both, in the same
+/// order, but for the last of a stream, which is taken for one of the stream before it. Readers count on over it; of what
+/// it said nothing is known, and no test in which to conclude it again.
+void Journal::Database::mark_missing_outputs() {
+  std::vector<DamagedRow> missing;
+  std::vector<std::pair<long long, DamagedRow>> places;  // with the row behind
+  std::map<std::string, long long> sequences;
+  DamagedRow row;
+  long long expected = 1;
+  soci::statement statement = (sql.prepare << "SELECT ordinal, topic, sequence, asset_id FROM outputs ORDER BY ordinal",
+                               into(row.order), into(row.topic), into(row.sequence), into(row.asset_id));
+  statement.execute();
+  while (statement.fetch()) {
+    for (; expected < row.order; ++expected) places.push_back({expected, row});
+    expected = row.order + 1;
+    for (long long& last = sequences[row.topic]; ++last < row.sequence;) {
+      missing.push_back(row);
+      missing.back().sequence = last;
+    }
+  }
+  if (places.empty()) return;
+  while (missing.size() < places.size()) {
+    missing.push_back(places[missing.size()].second);
+    missing.back().sequence = ++sequences[missing.back().topic];
+  }
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const DamagedRow& one = missing[k];
+    const std::string id = std::string(kDamagedMessage) + one.topic + "/" + std::to_string(one.sequence);
+    sql << "INSERT INTO outputs(ordinal, topic, sequence, message_id, asset_id, pst_id, published, payload, checksum)"
+           " VALUES(:ordinal, :topic, :sequence, :id, :asset, '', 0, '', 'damaged')",
+        use(places[k].first, "ordinal"), use(one.topic, "topic"), use(one.sequence, "sequence"), use(id, "id"),
+        use(one.asset_id, "asset");
+  }
+  tell_of_journal(std::to_string(places.size()) + " conclusions were removed from the journal, the first of them " +
+                  missing.front().topic + " number " + std::to_string(missing.front().sequence) +
+                  ": restore a backup, or retract and send again what they belong to");
 }
 
 void Journal::Database::know_damaged_tests() {

@@ -140,14 +140,19 @@ Result<std::vector<Journal::Awaiting>> Journal::awaiting() {
   return waiting;
 }
 
-Result<std::map<std::string, std::size_t>> Journal::acts_ahead() {
-  return database_->guard("counting acts that are ahead", [&] {
-    std::map<std::string, std::size_t> found;
-    std::string asset_id;
-    soci::statement statement =
-        (database_->sql.prepare << "SELECT asset_id FROM inputs" + kept_as(InputState::ahead), into(asset_id));
+Result<std::vector<Journal::Ahead>> Journal::acts_ahead() {
+  return database_->guard("looking for acts that are ahead", [&] {
+    std::vector<Ahead> found;
+    Ahead one;
+    long long received = 0;
+    soci::statement statement = (database_->sql.prepare << "SELECT message_id, asset_id, received FROM inputs" +
+                                                               kept_as(InputState::ahead) + " ORDER BY receipt",
+                                 into(one.message_id), into(one.asset_id), into(received));
     statement.execute();
-    while (statement.fetch()) ++found[asset_id];
+    while (statement.fetch()) {
+      one.received = {received};
+      found.push_back(one);
+    }
     return found;
   });
 }
@@ -175,6 +180,13 @@ Status Journal::end_awaiting(const std::string& message_id, InputState state) {
          use(message_id, "id"));
     statement.execute(true);
     if (opened) database_->open_inputs += static_cast<std::uint64_t>(statement.get_affected_rows());
+    ++database_->batch_rows;
+  });
+}
+
+Status Journal::forget_awaiting(const std::string& message_id) {
+  return database_->guard("forgetting an act that waited", [&] {
+    database_->sql << "DELETE FROM inputs WHERE consumed IN (3, 4) AND message_id = :id", use(message_id, "id");
     ++database_->batch_rows;
   });
 }
@@ -207,10 +219,8 @@ Status Journal::no_longer_new() {
 
 Status Journal::keep_anchor(const AuditAnchor& heard) {
   return database_->guard("keeping what was heard of acts", [&] {
-    const long long sequence = heard.sequence;
-    database_->sql << "INSERT INTO anchors(service, sequence, hash) VALUES(:service, :sequence, :hash)"
-                      " ON CONFLICT(service, sequence, hash) DO NOTHING",
-        use(heard.service, "service"), use(sequence, "sequence"), use(heard.hash, "hash");
+    if (add_anchor(database_->sql, heard))
+      database_->set_meta(kAnchorsSum, with_anchor(database_->meta(kAnchorsSum), heard));
     ++database_->batch_rows;
   });
 }

@@ -1,6 +1,8 @@
 // The checksum that a row of the journal carries, by which a bit that the disk or the memory turned is noticed.
 #pragma once
 
+#include <charconv>
+#include <cstdint>
 #include <initializer_list>
 #include <string>
 
@@ -45,6 +47,15 @@ inline constexpr const char* kExpiredRow = "expired";
 
 [[nodiscard]] inline std::string checksum_of_meta(const std::string& service, const std::string& writer_id) {
   return row_checksum({service, writer_id});
+}
+
+/// Of rows that are only added, in whatever order: each adds its checksum, modulo 2^64. Table meta keeps the sum.
+[[nodiscard]] inline std::uint64_t checksum_of_anchor(const std::string& service, long long sequence,
+                                                      const std::string& hash) {
+  const std::string checksum = row_checksum({service, std::to_string(sequence), hash});
+  std::uint64_t number = 0;
+  std::from_chars(checksum.data(), checksum.data() + checksum.size(), number, 16);
+  return number;
 }
 
 }  // namespace sealwatch

@@ -118,6 +118,7 @@ void Journal::Database::check_schema() {
                 "must be at most " + std::to_string(kJournalSchemaVersion) + ", the version that this program knows",
                 "install the sealwatch that wrote this journal, or a newer one"};
   check_meta();
+  has_all_tables = !is_made && version == kJournalSchemaVersion;
   if (version < kJournalSchemaVersion) migrate(version);
 }
 
@@ -155,15 +156,24 @@ void Journal::Database::migrate(int version) {
   transaction.commit();
 }
 
-/// Somebody may have dropped them.
+/// Somebody may have dropped or renamed them: what stood in them is missing, and nobody else would tell.
 void Journal::Database::make_later_tables() {
-  if (!has_table("quarantine")) {
+  std::string gone;
+  const auto is_gone = [&](const char* table) {
+    if (has_table(table)) return false;
+    gone += (gone.empty() ? "" : ", ") + std::string(table);
+    return true;
+  };
+  if (is_gone("quarantine")) {
     sql << kQuarantine;
     sql << "ALTER TABLE quarantine ADD COLUMN checksum VARCHAR(16)";
   }
-  if (!has_table("alarms")) sql << kAlarms;
-  if (!has_table("anchors")) sql << kAnchors;
-  make_acts_table(sql);
+  if (is_gone("alarms")) sql << kAlarms;
+  if (is_gone("anchors")) sql << kAnchors;
+  if (is_gone("acts")) make_acts_table(sql);
+  if (has_all_tables && !gone.empty())
+    tell_of_journal("what the journal kept was removed from it, table " + gone +
+                    ": restore a backup; sealwatch audit shows what is missing of acts");
 }
 
 }  // namespace sealwatch

@@ -207,7 +207,7 @@ TEST_F(QuarantineTest, IsTriedAgainWhereSomebodyAsksForIt) {
   EXPECT_EQ(acts[0].act.subject, "test_features/a1");
 }
 
-TEST_F(QuarantineTest, AsksForNothingOfAJournalOfAnOlderProgram) {
+TEST_F(QuarantineTest, AsksForNothingOfAJournalWithoutItsTableWhichIsTold) {
   { auto process = start(); }
   place_.execute("DROP TABLE quarantine");
   {
@@ -217,7 +217,9 @@ TEST_F(QuarantineTest, AsksForNothingOfAJournalOfAnOlderProgram) {
     EXPECT_FALSE(desk->ask_again("x", "J. Silva", UtcTime{1}).value());
   }
   auto process = start();
-  EXPECT_THAT(process->journal().quarantine().value(), IsEmpty());
+  const auto told = process->journal().quarantine().value();
+  ASSERT_THAT(told, SizeIs(1));
+  EXPECT_THAT(told[0].reason, HasSubstr("removed from it, table quarantine"));
 }
 
 /// Lives of a service in processes of their own, as its supervisor starts them.

@@ -118,9 +118,41 @@ TEST_F(OwnJournal, OfWhichANeighbourReadMoreThanItHasIsAnAlarm) {
   EXPECT_THAT(told(), ::testing::ElementsAre(::testing::HasSubstr("older than what data_manipulation has read of it")));
 }
 
+/// The journal is where it was all along: it is the heartbeat that is not true.
+TEST_F(OwnJournal, OfWhichANeighbourSuddenlyReadMoreIsAForgedHeartbeat) {
+  beat(0, 1);
+  send(1, "p1");
+  HealthReport report;
+  report.asset_id = "A";
+  report.header = header("health_report/p1", "p1");
+  ASSERT_TRUE(process_.journal().begin());
+  ASSERT_TRUE(process_.journal().add_output(report, UtcTime{}));
+  ASSERT_TRUE(process_.journal().commit());
+  wait_ = std::chrono::milliseconds(0);
+  ASSERT_TRUE(writer_.subscribe_service_topics());
+  hear_of_own(process_.journal().writer_id(), 1);
+  begin_ = std::chrono::steady_clock::now(), wait_ = std::chrono::milliseconds(1500);
+  hear_of_own(process_.journal().writer_id(), 7);
+  EXPECT_THAT(told(), ::testing::IsEmpty()) << "nothing of the journal";
+  std::string alarm;
+  EXPECT_TRUE(step_until(
+      [&] {
+        for (const BusItem& item : writer_.receive(std::chrono::milliseconds(1), 1000))
+          if (const auto* status = std::get_if<ServiceStatus>(&item))
+            for (const ServiceAlarm& one : status->alarms) alarm = one.kind + ": " + one.text;
+        return !alarm.empty();
+      },
+      [&] { process_.step(); }));
+  EXPECT_EQ(alarm,
+            "unknown_writer: it says that data_manipulation has read number 7 of health_report, of which this "
+            "service has written 1: its heartbeat is forged, or its journal is damaged");
+}
+
 TEST_F(OwnJournal, BeforeWhichThereWasAnotherIsAnAlarm) {
   hear_of_own("joining-of-yesterday", 7);
-  EXPECT_THAT(told(), ::testing::ElementsAre(::testing::HasSubstr("the journal was lost")));
+  EXPECT_THAT(told(), ::testing::ElementsAre(::testing::AllOf(
+                          ::testing::HasSubstr("the journal was lost, as data_manipulation knows of one before it"),
+                          ::testing::HasSubstr("or somebody else sends heartbeats in its name"))));
 }
 
 TEST_F(OwnJournal, OfWhichNobodyReadMoreIsNone) {

@@ -142,6 +142,31 @@ TEST_P(AuditTest, AnEndThatIsCutOffIsKnownByAHashThatWasNoted) {
   for (const AuditEntry& entry : entries()) EXPECT_NE(entry.hash, hashes_.back());
 }
 
+/// Whoever cuts a record off would take away first what others heard of it.
+TEST_P(AuditTest, WhatOtherServicesHeardIsMissedWhereItWasRemovedOrRenamed) {
+  for (const std::string change :
+       {"DELETE FROM anchors WHERE sequence = 2", "DELETE FROM anchors", "DROP TABLE anchors",
+        "ALTER TABLE anchors RENAME TO other_anchors", "UPDATE anchors SET service = 'nobody' WHERE sequence = 4"}) {
+    const Place neighbours{GetParam()};
+    const auto open = [&] { return std::move(*Journal::open(neighbours.connection(), "state_detection")); };
+    {
+      Journal neighbour = open();
+      ASSERT_TRUE(neighbour.begin());
+      for (const std::int64_t heard : {2, 4, 4})
+        ASSERT_TRUE(neighbour.keep_anchor({kService, heard, hashes_[static_cast<std::size_t>(heard) - 1]}));
+      ASSERT_TRUE(neighbour.commit());
+    }
+    ASSERT_TRUE(read_audit_anchors(neighbours.connection(), "state_detection").value().are_whole);
+    EXPECT_THAT(open().quarantine().value(), ::testing::IsEmpty());
+    neighbours.execute(change);
+    EXPECT_FALSE(read_audit_anchors(neighbours.connection(), "state_detection").value().are_whole) << change;
+    Journal started = open();
+    ASSERT_THAT(started.quarantine().value(), SizeIs(1)) << change;
+    EXPECT_THAT(started.quarantine().value()[0].reason, HasSubstr("table anchors")) << change;
+    EXPECT_TRUE(read_audit_anchors(neighbours.connection(), "state_detection").value().are_whole) << "it was told";
+  }
+}
+
 TEST_P(AuditTest, AnEndThatIsCutOffIsKnownByWhatOtherServicesHeard) {
   const Place neighbours{GetParam()};
   {
@@ -153,7 +178,7 @@ TEST_P(AuditTest, AnEndThatIsCutOffIsKnownByWhatOtherServicesHeard) {
     }
     ASSERT_TRUE(neighbour->commit());
   }
-  const auto heard = read_audit_anchors(neighbours.connection(), "state_detection").value();
+  const auto heard = read_audit_anchors(neighbours.connection(), "state_detection").value().heard;
   ASSERT_THAT(heard, SizeIs(2));
   EXPECT_FALSE(find_cut(kService, entries(), heard));
   place_.execute("DELETE FROM acts WHERE sequence = 5");

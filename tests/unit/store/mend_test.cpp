@@ -119,6 +119,12 @@ class Mend : public ::testing::Test {
     statement("INSERT INTO sqlite_master SELECT * FROM kept");
     statement("DROP TABLE kept");
   }
+  static std::vector<std::string> reasons(Journal journal) {
+    std::vector<std::string> found;
+    const auto all = journal.quarantine().value();
+    for (const SetAside& one : all) found.push_back(one.reason);
+    return found;
+  }
   static Status look(Journal& journal) {
     for (int looks = 0; looks < 30; ++looks) {
       const auto more = journal.check_some();
@@ -385,6 +391,46 @@ TEST_F(Mend, ATurnedBitOfTheVersionIsNoNewerVersion) {
 }
 
 /// A message that an index left out may have been written once more before anybody looked.
+TEST_F(Mend, ATableThatWasRemovedOrRenamedIsTold) {
+  for (const std::string table : {"quarantine", "alarms", "anchors", "acts"}) {
+    statement("DROP TABLE " + table);
+    ASSERT_THAT(reasons(open()), Contains(HasSubstr("table " + table))) << table;
+  }
+  for (const std::string table : {"meta", "inputs", "outputs", "positions"}) {
+    statement("ALTER TABLE " + table + " RENAME TO was_" + table);
+    EXPECT_THAT(reasons(open()), Contains(HasSubstr("damaged and is made again"))) << table;
+  }
+}
+
+/// Its readers would wait for what is not there, or be sent another message under its number.
+TEST_F(Mend, ConclusionsThatWereRemovedAreTold) {
+  {
+    Journal journal = open();
+    ASSERT_TRUE(journal.begin());
+    for (int test = 3; test <= 9; ++test) ASSERT_TRUE(journal.add_output(report(test), UtcTime{}));
+    ASSERT_TRUE(journal.commit());
+    ASSERT_TRUE(look(journal));
+  }
+  statement("DELETE FROM outputs WHERE ordinal IN (1, 4, 5)");
+  {
+    Journal journal = open();
+    const Status looked = look(journal);
+    ASSERT_FALSE(looked);
+    EXPECT_THAT(looked.error().describe(), HasSubstr("one before it is missing"));
+  }
+  Journal journal = open();
+  EXPECT_TRUE(look(journal));
+  EXPECT_THAT(reasons(std::move(journal)),
+              Contains(HasSubstr("3 conclusions were removed from the journal, the first of "
+                                 "them health_report number 1")));
+  Journal again = open();
+  EXPECT_THAT(outputs(again), ElementsAre("report 2", "report 3", "report 6", "report 7", "report 8", "report 9"));
+  const auto sent = again.outputs(Topic::health_report, 3, 6, 10).value();
+  ASSERT_THAT(sent, SizeIs(4));
+  EXPECT_EQ(header_of(sent[1]).message_id, "damaged/health_report/4");
+  EXPECT_EQ(header_of(sent[3]).message_id, "report 6");
+}
+
 TEST_F(Mend, AMessageInTwoRowsHasTheFileMadeAgain) {
   const std::filesystem::path file = place_.directory() / "journal.db";
   long long page = 0, size = 0;

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""No file that a command is given makes it wait, fill the memory or fail within: it names the file and the rule.
+"""No file that a command is given makes it wait, fill the memory or fail within: it names the file and the rule. The
+largest recording that there may be is taken, in as little memory; one more row is too many.
 
 hostile_files.py SOURCE_DIR BIN_DIR FOLDER
 """
@@ -30,12 +31,12 @@ def write(name, content):
     return path(name)
 
 
-def run(*arguments):
+def run(*arguments, seconds=MOST_SECONDS):
     """Exit status (None: it had to be killed), greatest memory in MB, and what was printed."""
     output = open(path("output"), "wb+")
     child = subprocess.Popen([f"{BIN}/sealwatch", *arguments], stdin=subprocess.DEVNULL, stdout=output,
                              stderr=subprocess.STDOUT, cwd=FOLDER, start_new_session=True)
-    end = time.monotonic() + MOST_SECONDS
+    end = time.monotonic() + seconds
     killed = False
     while True:
         pid, status, usage = os.wait4(child.pid, os.WNOHANG)
@@ -190,6 +191,24 @@ def contents():
     expect(["forecast", "--history", path("wide.csv")], ["wide.csv", "is not a history"], "a history of many columns")
 
 
+def largest_recording():
+    """Of two million numbers (include/sealwatch/core/test_limits.hpp), and of a row more."""
+    channels = ["time[s]", "pressure_a[Pa]", "pressure_b[Pa]", "flow[m3/s]", "position[m]"]
+    head = ",".join(channels) + "\n"
+    count = 2_000_000 // len(channels)
+    rows = [f"{0.0002 * k:.4f},{2e6 + k % 997},{1e6 + k % 991},{1e-5 * (k % 7):.5f},{0.06 - 1e-7 * k:.7f}\n" for k in range(count + 1)]
+    write("most.csv", head + "".join(rows[:count]))
+    write("more.csv", head + "".join(rows))
+    for command in (["validate", "--simulated", path("most.csv")], ["fit", "--asset", ASSET]):
+        status, memory, text = run(*command, path("most.csv"), seconds=150.0)
+        what = f"{command[0]} of the largest recording"
+        if status not in (0, 1):
+            failures.append(f"{what}: ends with {status}: {text[:300]}")
+        if memory > MOST_MB:
+            failures.append(f"{what}: takes {memory:.0f} MB")
+    expect(["fit", "--asset", ASSET, path("more.csv")], ["more.csv", "numbers"], "a recording of a row too many")
+
+
 def main():
     shutil.rmtree(FOLDER, ignore_errors=True)
     os.makedirs(FOLDER)
@@ -199,6 +218,7 @@ def main():
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     files_that_are_none()
     contents()
+    largest_recording()
     shutil.rmtree(FOLDER, ignore_errors=True)
     print("\n".join(failures) or "every command refuses by name")
     sys.exit(1 if failures else 0)

@@ -7,8 +7,6 @@
 namespace sealwatch::equations {
 namespace {
 
-constexpr int kOrders = 3;  // of a table: curve, slope, curvature
-
 bool has_two_operands(Operation operation) { return operation >= Operation::add && operation <= Operation::power; }
 bool is_leaf(Operation operation) { return operation <= Operation::variable; }
 
@@ -80,7 +78,7 @@ Table::Table(std::vector<double> x, std::vector<double> y)
 
 double Table::value(double at, int order) const {
   const bool before = at <= x_.front();
-  if (before || at >= x_.back()) {
+  if (before || !(at < x_.back())) {  // what is no number too
     const double end = before ? x_.front() : x_.back(), slope = before ? slope_.front() : slope_.back();
     if (order > 0) return order == 1 ? slope : 0.0;
     return (before ? y_.front() : y_.back()) + slope * (at - end);
@@ -113,8 +111,8 @@ std::size_t Expressions::add_table(Table table) {
 }
 
 Node Expressions::table(std::size_t number, Node at, int order) {
-  if (order >= kOrders) return constant(0.0);
-  const auto which = static_cast<Node>(number * kOrders + static_cast<std::size_t>(order));
+  if (static_cast<std::size_t>(order) >= kOrdersOfTable) return constant(0.0);
+  const auto which = static_cast<Node>(number * kOrdersOfTable + static_cast<std::size_t>(order));
   return intern({.operation = Operation::table, .a = which, .b = at, .number = 0.0});
 }
 
@@ -200,7 +198,7 @@ Node Expressions::derivative_of(const Entry& entry, Node node, Node da, Node db)
     case Operation::logistic:
       return times(multiply(node, subtract(one(), node)));
     case Operation::table:
-      return multiply(table(a / kOrders, b, static_cast<int>(a % kOrders) + 1), db);
+      return multiply(table(a / kOrdersOfTable, b, static_cast<int>(a % kOrdersOfTable) + 1), db);
     case Operation::constant:
     case Operation::variable:
     case Operation::sign:

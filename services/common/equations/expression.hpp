@@ -54,9 +54,17 @@ class Table {
   /// The curve (order 0), its slope (1) or its curvature (2).
   [[nodiscard]] double value(double at, int order) const;
 
+  [[nodiscard]] const std::vector<double>& x() const { return x_; }
+  [[nodiscard]] const std::vector<double>& y() const { return y_; }
+  /// At the points.
+  [[nodiscard]] const std::vector<double>& slope() const { return slope_; }
+
  private:
   std::vector<double> x_, y_, slope_;
 };
+
+/// Of a table's curve, its slope or its curvature: which table, and the order.
+inline constexpr std::size_t kOrdersOfTable = 3;
 
 double evaluate(Operation operation, double a, double b);
 

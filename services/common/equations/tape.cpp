@@ -60,7 +60,7 @@ void Tape::run(const std::vector<Instruction>& instructions, double* r) const {
         r[i.to] = -r[i.a];
         break;
       case Operation::table:
-        r[i.to] = (*tables_)[i.a / 3].value(r[i.b], static_cast<int>(i.a % 3));
+        r[i.to] = (*tables_)[i.a / kOrdersOfTable].value(r[i.b], static_cast<int>(i.a % kOrdersOfTable));
         break;
       default:
         r[i.to] = evaluate(i.operation, r[i.a], r[i.b]);

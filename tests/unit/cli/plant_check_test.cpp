@@ -97,7 +97,7 @@ TEST(PlantExport, ABuiltInPlantHasTheParametersOfItsText) {
       EXPECT_EQ(rows[k].unit, (*plant)->parameters[k].unit);
     }
   }
-  EXPECT_EQ(built_in, 2);
+  EXPECT_EQ(built_in, 4);
 }
 
 }  // namespace

@@ -155,6 +155,7 @@ TEST(Tables, AreSmoothAndKeepTheRiseOfTheirPoints) {
   }
   for (const double knot : {1.0, 2.0, 4.0}) EXPECT_NEAR(table.value(knot - 1e-9, 1), table.value(knot + 1e-9, 1), 1e-6);
   EXPECT_DOUBLE_EQ(table.value(2.0, 0), 5.0);
+  EXPECT_TRUE(std::isnan(table.value(std::nan(""), 0)));
 }
 
 TEST(Units, AreProductsOfPowers) {

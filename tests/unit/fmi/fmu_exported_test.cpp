@@ -202,6 +202,18 @@ TEST(ExplainedFmu, HasThePlantsInputsAndParametersWhereTheUnitsFollowFromThem) {
   expect_same(exported, "position", "position", 1e-4);  // the recorded rate is linear between samples where it jumps
 }
 
+// A law at the input is behind the table, so that the input is another one without the law.
+TEST(ExplainedFmu, HasThePlantsTablesWithALawBehindThem) {
+  const Exported exported(spring_return("fmu_spring_return2"),
+                          spring("pull(drive_voltage - u_lost)", "k_s") +
+                              "tables: {pull: {x: [-6, 0, 1, 6], x_unit: V, y: [-9, 0, 2, 5], y_unit: V}}\n",
+                          [](AssetConfig& asset) {
+                            asset.physics = {term("driver_dead_time", "driver", {{"V_z", 0.4}, {"u_s", 0.3}})};
+                          });
+  ASSERT_EQ(exported.refusal(), "");
+  expect_same(exported, "position", "position", 1e-8);
+}
+
 TEST(ExplainedFmu, PassesEventsOn) {
   for (const char* binary : {"fmu_bouncing2", "fmu_bouncing3"}) {
     const Exported exported(bouncing(binary), R"yaml(
@@ -343,6 +355,84 @@ TEST(ExplainedFmu, AnOutputTakesTheNameOfItsAlias) {
   EXPECT_THAT(exported.text(), AllOf(HasSubstr("  stroke: {unit: \"m\", value: "), HasSubstr("variable: \"height_\"")));
   expect_same(exported, "stroke", "stroke", 1e-8);
   expect_same(exported, "height", "height", 2e-8);
+}
+
+/// A recording of a compiled actuator: its inputs in a few steps, its outputs at their start.
+TimeSeries stroke_of(const PlantDescription& plant) {
+  TimeSeries samples;
+  for (const ChannelDescription& channel : plant.channels)
+    samples.channels.push_back({channel.name, channel.unit, 0.0, {}});
+  for (int row = 0; row <= 200; ++row) {
+    samples.time_s.push_back(5e-3 * row);
+    const double t = samples.time_s.back();
+    for (Series& series : samples.channels)
+      series.values.push_back(series.name == "motor_voltage" ? 10.0 * t
+                              : series.name == "motor_duty"  ? 0.4 * t
+                              : series.name == "valve_state" ? (row < 60 ? 0.0 : 1.0)
+                              : series.name == "pressure_b"  ? 1.0e6
+                              : series.unit == "Pa"          ? (plant.name.ends_with("switched_text") ? 1.9e6 : 1.1e7)
+                              : series.unit == "m"           ? 0.03
+                                                             : 0.0);
+  }
+  return samples;
+}
+
+std::string without_all(std::string text, const std::string& what) {
+  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at)) text.erase(at, what.size());
+  return text;
+}
+
+// A built-in plant is exported as its text (config/plants), which has its equations. No unit finds its rest by itself: the
+// states that settle in the text begin here where the unit's do.
+TEST(ExportedBuiltInPlant, SimulatesAgainWhatItsTextDoes) {
+  for (const std::string name : {"eha", "eha_switched"}) {
+    const TestFolder folder;
+    std::string text;
+    std::getline(std::ifstream(SEALWATCH_SOURCE_DIR "/config/plants/" + name + ".yaml"), text, '\0');
+    text = without_all(without_all(replaced(text, "name: ", "name: unsettled_"), "settles: true, "),
+                       "    settles: true\n");
+    std::ofstream(folder / "text.yaml") << text;
+    const auto read = read_plant_file((folder / "text.yaml").string());
+    const auto plant = load_plant((folder / "text.yaml").string());
+    ASSERT_TRUE(read && plant) << (read ? plant.error() : read.error()).front().describe();
+    AssetConfig asset = nominal_asset((*plant)->name);
+    asset.parameters["f_C"].value *= 1.5;
+    asset.physics = {term("external_leakage", "chamber_a", {{"G", 1e-13}})};
+    const auto model = export_model(read->built.plant, asset);
+    ASSERT_TRUE(model) << model.error().describe();
+    const std::string file = (folder / "built_in.fmu").string();
+    const auto written = write_fmu(file, *model);
+    ASSERT_TRUE(written && written->binary) << (written ? written->without_binary : written.error().describe());
+    const auto fmu = FmuFile::open(file);
+    ASSERT_TRUE(fmu) << fmu.error().describe();
+    const auto imported = plant_file_of(**fmu, "built_in.fmu");
+    ASSERT_TRUE(imported) << imported.error().describe();
+    std::string around = replaced(*imported, "name: ", "name: again_");
+    if (name == "eha_switched") around = replaced(around, "valve_state: {", "valve_state: {course: held, ");
+    std::ofstream(folder / "again.yaml") << around;
+    const auto again = load_plant((folder / "again.yaml").string());
+    ASSERT_TRUE(again) << again.error().front().describe();
+    const TimeSeries samples = stroke_of(**plant);
+    const auto by_text = PlantSimulation::create(asset, samples);
+    const auto unit = PlantSimulation::create(nominal_asset((*again)->name), samples);
+    ASSERT_TRUE(by_text) << by_text.error().describe();
+    ASSERT_TRUE(unit) << unit.error().describe();
+    ModelValues values = (*unit)->start();
+    values.initial_state = (*by_text)->start().initial_state;
+    const auto expected = (*by_text)->run((*by_text)->start(), {}, {.relative_tolerance = 1e-8});
+    const auto found = (*unit)->run(values, {}, {.relative_tolerance = 1e-7});
+    ASSERT_TRUE(expected) << expected.error().describe();
+    ASSERT_TRUE(found) << found.error().describe();
+    const auto channels = (*unit)->channels();
+    for (std::size_t c = 0; c < (*by_text)->channels().size(); ++c) {
+      const std::string& channel = (*by_text)->channels()[c];
+      const auto same = std::ranges::find(channels, channel) - channels.begin();
+      ASSERT_LT(same, std::ssize(channels)) << channel;
+      const auto one = expected->values.col(static_cast<Eigen::Index>(c)), other = found->values.col(same);
+      EXPECT_GT(one.cwiseAbs().maxCoeff(), 0.0) << channel;
+      EXPECT_LT((one - other).cwiseAbs().maxCoeff(), 1e-3 * one.cwiseAbs().maxCoeff()) << name << " " << channel;
+    }
+  }
 }
 
 TEST(ExplainedFmu, AMissingFolderIsNamed) {

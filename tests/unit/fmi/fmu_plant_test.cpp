@@ -436,6 +436,25 @@ TEST(ExportedFmu, OfFmi3SimulatesAsThePlantWithItsLaws) {
   EXPECT_EQ((*fmu)->description().version, Version::fmi3);
 }
 
+// Between, at and beyond the points of both tables, one of a state and one of an input with a law.
+TEST(ExportedFmu, HasThePlantsTables) {
+  const TestFolder folder;
+  const std::string text = with(with(text_plant("spring_with_tables"), "k_F * (drive_voltage - u_lost)",
+                                     "k_F * pull(drive_voltage - u_lost)"),
+                                "- k_s * x", "- k_s * stiffening(x)") +
+                           R"yaml(tables:
+  pull: {x: [-3, -1, 0, 0.5, 2], x_unit: V, y: [-2.5, -1, 0, 0.2, 2.1], y_unit: V}
+  stiffening: {x: [-0.001, 0.001, 0.004, 0.006], x_unit: m, y: [-0.002, 0.001, 0.005, 0.02], y_unit: m}
+)yaml";
+  const std::string file = written(folder, text);
+  const auto plant = load_plant(file);
+  ASSERT_TRUE(plant) << plant.error().front().describe();
+  AssetConfig asset = nominal_asset("spring_with_tables");
+  asset.physics = {law_at("piston", "stribeck_friction", "spring_with_tables"),
+                   law_at("driver", "driver_dead_time", "spring_with_tables")};
+  expect_same_exported(folder, file, asset, "exported_with_tables", "");
+}
+
 TEST(ExportedFmu, HasTheLawsThatThePlantBringsItself) {
   const TestFolder folder;
   const std::string file = written(folder, text_plant("spring_with_laws") + kOwnLaws);

@@ -38,7 +38,6 @@ std::string filled(std::string pattern, const std::string& a, const std::string&
   return pattern;
 }
 
-/// "": the operation cannot be written.
 const char* pattern_of(Operation operation) {
   switch (operation) {
     case Operation::add:
@@ -81,10 +80,41 @@ const char* pattern_of(Operation operation) {
       return "($a > 0.0 ? $a : 0.0) + log1p(exp(-fabs($a)))";
     case Operation::logistic:
       return "0.5 * (1.0 + tanh(0.5 * $a))";
-    default:
-      return "";
+    case Operation::table:
+    case Operation::constant:
+    case Operation::variable:
+      break;
   }
+  return "";
 }
+
+std::string table_call(const equations::Expressions::Entry& entry, const std::string& at) {
+  const std::string name = "table" + std::to_string(entry.a / equations::kOrdersOfTable);
+  return "table_value(" + name + "_x, " + name + "_y, " + name + "_slope, " + name + "_last, " + at + ", " +
+         std::to_string(entry.a % equations::kOrdersOfTable) + ")";
+}
+
+/// equations::Table::value.
+constexpr const char* kTableValue =
+    R"c(static double table_value(const double* x, const double* y, const double* slope, int last, double at, int order) {
+  int k = 0, end = last;
+  double h, z, rise, c, d;
+  if (at <= x[0] || !(at < x[last])) {
+    k = at <= x[0] ? 0 : last;
+    return order == 0 ? y[k] + slope[k] * (at - x[k]) : order == 1 ? slope[k] : 0.0;
+  }
+  while (end - k > 1) {
+    const int middle = (k + end) / 2;
+    if (x[middle] <= at) k = middle;
+    else end = middle;
+  }
+  h = x[k + 1] - x[k], z = (at - x[k]) / h, rise = y[k + 1] - y[k];
+  c = 3.0 * rise - h * (2.0 * slope[k] + slope[k + 1]), d = h * (slope[k] + slope[k + 1]) - 2.0 * rise;
+  if (order == 0) return y[k] + z * (h * slope[k] + z * (c + z * d));
+  return order == 1 ? slope[k] + z * (2.0 * c + 3.0 * z * d) / h : (2.0 * c + 6.0 * z * d) / (h * h);
+}
+
+)c";
 
 }  // namespace
 
@@ -93,17 +123,34 @@ std::string c_number(double value) {
   return result.find_first_of(".en") == std::string::npos ? result.append(".0") : result;
 }
 
-Result<std::string> c_function(const std::string& name, const equations::TextEquationsParts& parts,
-                               std::span<const Node> nodes, std::span<const std::size_t> rates) {
+std::string c_tables(const equations::Expressions& expressions) {
+  if (expressions.tables().empty()) return "";
+  std::string text;
+  for (std::size_t k = 0; k < expressions.tables().size(); ++k) {
+    const equations::Table& table = expressions.tables()[k];
+    const std::string name = "table" + std::to_string(k);
+    for (const auto& [part, values] : {std::pair{"_x", &table.x()}, {"_y", &table.y()}, {"_slope", &table.slope()}}) {
+      text.append("static const double ").append(name).append(part).append("[] = {");
+      for (std::size_t n = 0; n < values->size(); ++n) text.append(n > 0 ? ", " : "").append(c_number((*values)[n]));
+      text.append("};\n");
+    }
+    text.append("enum { ").append(name).append("_last = ").append(std::to_string(table.x().size() - 1)).append(" };\n");
+  }
+  return text + kTableValue;
+}
+
+std::string c_function(const std::string& name, const equations::TextEquationsParts& parts, std::span<const Node> nodes,
+                       std::span<const std::size_t> rates) {
   const auto& entries = parts.expressions.entries();
   std::vector<bool> needed(entries.size(), false);
   for (const Node node : nodes) needed[node] = true;
   for (std::size_t k = entries.size(); k-- > 0;) {
     const bool leaf = entries[k].operation == Operation::constant || entries[k].operation == Operation::variable;
     if (!needed[k] || leaf) continue;
-    needed[entries[k].a] = true;
     const std::string_view pattern = pattern_of(entries[k].operation);
-    if (pattern.find("$b") != std::string_view::npos) needed[entries[k].b] = true;
+    if (pattern.find("$a") != std::string_view::npos) needed[entries[k].a] = true;
+    if (entries[k].operation == Operation::table || pattern.find("$b") != std::string_view::npos)
+      needed[entries[k].b] = true;
   }
   std::string text = "static void ";
   text.append(name).append(
@@ -118,12 +165,12 @@ Result<std::string> c_function(const std::string& name, const equations::TextEqu
     } else if (entry.operation == Operation::variable) {
       value[k] = place_of(entry.a, parts, rates);
     } else {
-      const std::string pattern = pattern_of(entry.operation);
-      if (pattern.empty())
-        return fail("has a table, which is not written in C yet", "write it as an expression, or fit one to it");
+      const bool table = entry.operation == Operation::table;
       value[k] = "n" + std::to_string(k);
       text.append("  const double ").append(value[k]).append(" = ");
-      text.append(filled(pattern, value[entry.a], value[entry.b])).append(";\n");
+      text.append(table ? table_call(entry, value[entry.b])
+                        : filled(pattern_of(entry.operation), value[entry.a], value[entry.b]));
+      text.append(";\n");
     }
   }
   for (std::size_t k = 0; k < nodes.size(); ++k)

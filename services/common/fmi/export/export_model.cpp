@@ -142,19 +142,11 @@ class Exporter {
   }
 
   Result<std::string> source() {
-    std::string text;
+    std::string text = c_tables(parts_.expressions);
     for (const auto& [name, nodes] : {std::pair{"plant_rates", &parts_.derivatives.values},
                                       {"plant_signals", &parts_.signals.values},
-                                      {"plant_outputs", &parts_.outputs.values}}) {
-      const auto function = c_function(name, parts_, *nodes, rates_);
-      if (!function)
-        return fail(Error{.file = plant_.description.file,
-                          .place = {},
-                          .value = plant_.description.name,
-                          .rule = function.error().rule,
-                          .advice = function.error().advice});
-      text += *function + "\n";
-    }
+                                      {"plant_outputs", &parts_.outputs.values}})
+      text += c_function(name, parts_, *nodes, rates_) + "\n";
     const auto laws = laws_function(
         plant_.description, terms_,
         {.head = "static void model_laws(double t, const double* x, const double* u, const double* p, double* e,\n"

@@ -288,17 +288,14 @@ class WrapperExporter {
     std::vector<Node> inputs, parameters;
     for (const DrivenVariable* one : following(true)) inputs.push_back(one->node);
     for (const DrivenVariable* one : following(false)) parameters.push_back(one->node);
-    std::string text;
+    std::string text = c_tables(parts_.expressions);
     for (const auto& [name, nodes] :
          {std::pair<const char*, const std::vector<Node>*>{"plant_rates", &parts_.derivatives.values},
           {"plant_signals", &parts_.signals.values},
           {"plant_inputs", &inputs},
           {"plant_parameters", &parameters},
-          {"plant_outputs", &outputs_}}) {
-      const auto function = c_function(name, parts_, *nodes, rates_);
-      if (!function) return refuse(function.error().rule, function.error().advice);
-      text += *function + "\n";
-    }
+          {"plant_outputs", &outputs_}})
+      text += c_function(name, parts_, *nodes, rates_) + "\n";
     const std::string call = "  plant_signals(t, x, u, p, e, s);\n";
     const auto laws = laws_function(
         plant_.description, terms_,

@@ -19,7 +19,9 @@ Node without_added(Expressions& expressions, Node node, const equations::Variabl
   const Expressions::Entry entry = expressions.entries()[node];
   if (entry.operation == Operation::constant) return node;
   if (entry.operation == Operation::variable) return entry.a < places.added ? node : expressions.constant(0.0);
-  if (entry.operation == Operation::table) return node;
+  if (entry.operation == Operation::table)
+    return expressions.table(entry.a / equations::kOrdersOfTable, without_added(expressions, entry.b, places),
+                             static_cast<int>(entry.a % equations::kOrdersOfTable));
   const Node a = without_added(expressions, entry.a, places);
   return is_binary(entry.operation) ? expressions.apply(entry.operation, a, without_added(expressions, entry.b, places))
                                     : expressions.apply(entry.operation, a);

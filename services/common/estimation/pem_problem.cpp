@@ -8,6 +8,7 @@
 #include "services/common/dense/dense.hpp"
 #include "services/common/dense/row_products.hpp"
 #include "services/common/estimation/channel_noise.hpp"
+#include "services/common/estimation/own_jumps.hpp"
 
 namespace sealwatch {
 namespace {
@@ -174,6 +175,20 @@ Result<std::vector<Unknown>> own_unknowns(const PlantSimulation& simulation, boo
   return unknowns;
 }
 
+// Whether a jump comes before or after a sample is decided by less than anyone knows of the plant, and its height is many
+// times the noise: the samples on both of its sides have no weight.
+void pass_over_jumps(const TimeSeries& recorded, PemRecording& recording) {
+  const std::span<const std::string> channels = recording.simulation->channels();
+  const Eigen::Index width = std::ssize(channels);
+  for (Eigen::Index c = 0; c < width; ++c)
+    for (const std::size_t behind :
+         own_jumps(*recording.simulation, *recorded.find(channels[static_cast<std::size_t>(c)]))) {
+      if (recording.weight.size() == 0) recording.weight = Eigen::VectorXd::Ones(width * std::ssize(recorded.time_s));
+      const auto row = static_cast<Eigen::Index>(behind);
+      recording.weight(width * row + c) = recording.weight(width * (row - 1) + c) = 0.0;
+    }
+}
+
 Result<PemRecording> make_recording(const AssetConfig& asset, const TimeSeries& recorded, bool window) {
   if (const Status usable = check_values(recorded); !usable) return fail(usable.error());
   Result<std::unique_ptr<PlantSimulation>> simulation = PlantSimulation::create(asset, recorded);
@@ -188,6 +203,7 @@ Result<PemRecording> make_recording(const AssetConfig& asset, const TimeSeries& 
   Result<std::vector<Unknown>> own = own_unknowns(*recording.simulation, !window);
   if (!own) return fail(own.error());
   recording.own = std::move(*own);
+  pass_over_jumps(recorded, recording);
   return recording;
 }
 

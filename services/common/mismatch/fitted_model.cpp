@@ -5,6 +5,7 @@
 
 #include "sealwatch/model/law_sizes.hpp"
 #include "services/common/dense/row_products.hpp"
+#include "services/common/estimation/own_jumps.hpp"
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/input_jumps.hpp"
 
@@ -132,7 +133,8 @@ Result<PemProblem> problem_of(const AssetConfig& asset, const Data& data, const 
   for (std::size_t k = 0; k < data.colour.size(); ++k) problem->recordings[k].colour = data.colour[k];
   for (std::size_t k = 0; k < data.samples.size(); ++k) {
     PemRecording& recording = problem->recordings[k];
-    if (!data.weight.empty()) recording.weight = data.weight[k];
+    if (!data.weight.empty() && data.weight[k].size() > 0)
+      recording.weight = recording.weight.size() == 0 ? data.weight[k] : data.weight[k].cwiseProduct(recording.weight);
     leave_out(samples_after_jumps(data.samples[k], recording.simulation->plant()), recording);
     if (data.start_as_measured)
       std::erase_if(recording.own, [](const Unknown& unknown) { return unknown.name.starts_with("initial:"); });
@@ -219,10 +221,13 @@ Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const 
   if (!problem) return fail(problem.error());
   // A model that lacks physics often does not converge, and pieces, with states of their own, hide what it lacks: they
   // are for values with which nothing can be simulated.
-  options.cut_into_pieces = false;
+  const auto jumps = [&] { return has_own_jumps(*problem->recordings.front().simulation, data.samples.front()); };
+  // One that jumps is not asked for what it lacks, and ends in the nearest of many minima: as `fit` does, from beginnings.
+  options.cut_into_pieces = data.groups.empty() && jumps();
   Result<PemOptimum> optimum = search_from_asset(*problem, asset, data.samples, options);
+  const bool again = !optimum && !options.cut_into_pieces;
   options.cut_into_pieces = data.groups.empty();  // else they are pieces already
-  if (!optimum && options.cut_into_pieces) optimum = search_from_asset(*problem, asset, data.samples, options);
+  if (again && options.cut_into_pieces) optimum = search_from_asset(*problem, asset, data.samples, options);
   if (!optimum) return fail(optimum.error());
   return as_exact_as_it_fits(model_at(asset, std::move(*problem), std::move(*optimum)), data, threads, iterations,
                              bound);

@@ -241,6 +241,11 @@ Result<SimulatedOutputs> RuntimePlantSimulation::run_by_differences(const Record
   return outputs;
 }
 
+bool may_jump(const PlantSimulation& simulation) {
+  const auto* runtime = dynamic_cast<const RuntimePlantSimulation*>(&simulation);
+  return runtime != nullptr && runtime->runs_elsewhere();
+}
+
 Status add_plant(RuntimePlant plant) {
   const auto shared = std::make_shared<const RuntimePlant>(std::move(plant));
   PlantSimulator simulator{.model = shared->description.name, .inputs = {}, .simulate = nullptr};

@@ -17,6 +17,7 @@ class RuntimePlantSimulation final : public RecordedSimulation {
                                                                        const TimeSeries& recorded, PhysicsTerms terms);
 
   [[nodiscard]] std::span<const Site> sites() const override { return plant().sites; }
+  [[nodiscard]] bool runs_elsewhere() const { return told_ != nullptr; }
 
   [[nodiscard]] Result<SimulatedOutputs> run_driven_by(const RecordedInput& input, const ModelValues& values,
                                                        std::span<const FreeQuantity> free,
@@ -40,5 +41,8 @@ class RuntimePlantSimulation final : public RecordedSimulation {
   std::shared_ptr<const RuntimePlant> runtime_;
   std::unique_ptr<const Told> told_;  ///< of those alone
 };
+
+/// Whether the simulation may jump where no input does: a unit that runs elsewhere has events of its own.
+[[nodiscard]] bool may_jump(const PlantSimulation& simulation);
 
 }  // namespace sealwatch

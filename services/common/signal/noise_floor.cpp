@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "sealwatch/signal/jumps.hpp"
+
 namespace sealwatch::signal {
 namespace {
 
@@ -104,6 +106,23 @@ double from_divided_differences(std::span<const double> values, std::span<const 
                     : third;
 }
 
+// Magnitudes of the third differences: where jumps take part in many, of those alone in which none does. Of a few the
+// median knows nothing.
+std::vector<double> third_differences(std::span<const double> values, double step) {
+  constexpr double kSteps = 8.0;  // a counter that turns slowly goes on by one step at a time
+  constexpr double kFew = 0.05;   // of all
+  std::vector<double> all, between_jumps;
+  const std::vector<std::size_t> jumps = find_jumps(values, kSteps * step);
+  auto next = jumps.begin();
+  for (std::size_t k = 0; k + 3 < values.size(); ++k) {
+    all.push_back(std::abs(values[k + 3] - 3.0 * values[k + 2] + 3.0 * values[k + 1] - values[k]));
+    while (next != jumps.end() && *next <= k) ++next;
+    if (next == jumps.end() || *next > k + 3) between_jumps.push_back(all.back());
+  }
+  const bool many = static_cast<double>(between_jumps.size()) < (1.0 - kFew) * static_cast<double>(all.size());
+  return many && between_jumps.size() >= kFewestSamples ? between_jumps : all;
+}
+
 }  // namespace
 
 NoiseFloor estimate_noise_floor(std::span<const double> samples, std::span<const double> sample_times_s) {
@@ -115,10 +134,8 @@ NoiseFloor estimate_noise_floor(std::span<const double> samples, std::span<const
     if (sample_times_s.size() == samples.size()) time_s.push_back(sample_times_s[k]);
   }
   if (values.size() < kFewestSamples) return {};
-  std::vector<double> difference(values.size() - 3);
-  for (std::size_t k = 0; k < difference.size(); ++k)
-    difference[k] = std::abs(values[k + 3] - 3.0 * values[k + 2] + 3.0 * values[k + 1] - values[k]);
   const double step = find_quantisation_step(values);
+  std::vector<double> difference = third_differences(values, step);
   double from_differences = kGaussianStdOverMad * middle_of(difference) / std::sqrt(kThirdDifferenceVariance);
   if (step > kCoarse * from_differences)
     from_differences = trimmed_standard_deviation(std::move(difference)) / std::sqrt(kThirdDifferenceVariance);

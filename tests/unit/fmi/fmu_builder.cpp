@@ -134,6 +134,23 @@ TestUnit small_input() {
   return unit;
 }
 
+TestUnit dosing() {
+  TestUnit unit{.binary = "fmu_dosing2",
+                .token = "{sealwatch-test-dosing}",
+                .indicators = 1,
+                .variables = {},
+                .structure = {},
+                .interfaces = {},
+                .version = {}};
+  const std::string parameter = "causality=\"parameter\" variability=\"tunable\"";
+  unit.variables = real2("T", 1000, "", "") + real2("der(T)", 2000, "", "derivative=\"1\"") +
+                   real2("u", 3000, "causality=\"input\"", "start=\"0\"") +
+                   real2("tau", 4000, parameter, "start=\"200\"") + real2("drop", 4001, parameter, "start=\"8\"") +
+                   real2("gain", 4002, parameter, "start=\"0.05\"") + real2("y", 5000, "causality=\"output\"", "");
+  unit.structure = "<Outputs><Unknown index=\"7\"/></Outputs><Derivatives><Unknown index=\"2\"/></Derivatives>\n";
+  return unit;
+}
+
 TestUnit gain() {
   TestUnit unit{.binary = "fmu_gain_cs2", .variables = {}, .structure = {}, .interfaces = {}, .version = {}};
   unit.interfaces = "<CoSimulation modelIdentifier=\"model\" canHandleVariableCommunicationStepSize=\"true\"/>\n";

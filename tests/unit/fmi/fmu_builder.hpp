@@ -38,6 +38,8 @@ struct TestUnit {
 [[nodiscard]] TestUnit bouncing(const std::string& binary);
 /// An input of some 1e-9, as its nominal value says.
 [[nodiscard]] TestUnit small_input();
+/// A bath that jumps to a lower temperature whenever it is hot.
+[[nodiscard]] TestUnit dosing();
 /// Inputs of all types, time events, a state that a parameter starts, a text: for Model Exchange and Co-Simulation.
 [[nodiscard]] TestUnit mixed(const std::string& binary);
 /// Arrays whose size is a structural parameter.

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "sealwatch/signal/jumps.hpp"
 #include "sealwatch/signal/noise_floor.hpp"
 #include "sealwatch/signal/stuck.hpp"
 
@@ -46,6 +47,30 @@ TEST(NoiseFloor, SeesTheNoiseUnderAMovingSignal) {
   for (std::size_t k = 0; k < values.size(); ++k)
     values[k] += 5.0 * std::sin(0.01 * static_cast<double>(k)) + (k > 2000 ? 3.0 : 0.0);
   EXPECT_NEAR(estimate_noise_floor(values).standard_deviation, 0.02, kNoiseFloorTolerance * 0.02);
+}
+
+// A bath that warms and is dosed with cold water every fifth sample: most differences have a jump in them.
+TEST(NoiseFloor, SeesTheNoiseBetweenJumps) {
+  for (const std::size_t period : {5, 12, 40}) {
+    std::vector<double> values = white_noise(4000, 0.02, 3);
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] += 0.65 * static_cast<double>(k % period);
+    constexpr double kFewerDifferences = 0.1;
+    EXPECT_NEAR(estimate_noise_floor(values).standard_deviation, 0.02, kFewerDifferences * 0.02) << period;
+  }
+}
+
+TEST(Jumps, AreToldFromSlopesCornersOutliersAndNoise) {
+  std::vector<double> values = white_noise(400, 0.02, 4);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double t = static_cast<double>(k);
+    values[k] += k < 100 ? 0.5 * t : k < 200 ? 100.0 - 0.5 * t : 3.0 * std::sin(0.3 * t);  // corners at 100 and 200
+    if (k >= 150) values[k] += 5.0;
+    if (k >= 300) values[k] -= 7.0;
+  }
+  values[50] += 20.0;
+  EXPECT_EQ(find_jumps(values), (std::vector<std::size_t>{150, 300}));
+  EXPECT_EQ(find_jumps(values, 6.0), (std::vector<std::size_t>{300}));
+  EXPECT_TRUE(find_jumps(white_noise(3, 1.0, 1)).empty());
 }
 
 // Eight samples a period: third differences show 0.1 of the signal, ten times the noise.

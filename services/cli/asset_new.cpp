@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <optional>
 #include <ranges>
 
 #include "sealwatch/core/text.hpp"
@@ -149,13 +150,13 @@ std::string columns_text(const Understood& log, const std::vector<std::size_t>& 
   return text;
 }
 
-/// "PT-1 [psig] may be it, but '1,234.5' in row 7 is not a number": of the first column in a unit of the channel that has
-/// cells without numbers.
+/// "PT-1 [psig] may be it, but '1,234.5' in row 7 is not a number": of the first column in a unit of the channel, or of
+/// its name, that has cells without numbers.
 std::string unreadable(const Understood& log, const ChannelDescription& channel) {
   for (std::size_t column = 0; column < log.offer.columns.size(); ++column) {
     const std::string unit = unit_of(log.offer.columns[column]);
-    if (unit.empty() || !convert_unit(unit, channel.unit.empty() ? "1" : channel.unit) ||
-        has_numbers(log.offer, column))
+    const bool of_its_unit = !unit.empty() && convert_unit(unit, channel.unit.empty() ? "1" : channel.unit);
+    if ((!of_its_unit && !is_named_like(log.offer.columns[column], channel)) || has_numbers(log.offer, column))
       continue;
     const auto word = std::ranges::find_if(log.offer.cells[column], [&](const std::string& cell) {
       return !parse_number(cell, log.offer.layout.decimal).has_value();
@@ -360,6 +361,28 @@ void note_switched_inputs(Understood& log) {
   }
 }
 
+/// Where rows are absent: what is simulated there is held against nothing, and an input is a ramp.
+void note_gaps(Understood& log) {
+  constexpr double kHides = 1.7;  // usual steps; as data acquisition counts them
+  double longest_s = 0.0, after_s = 0.0, step_s = 0.0;
+  std::size_t gaps = 0, test = 0;
+  for (std::size_t k = 0; k < log.tests.size(); ++k) {
+    const std::vector<double>& time_s = log.tests[k].samples.time_s;
+    const double usual_s = usual_step(time_s);
+    for (std::size_t row = 1; row < time_s.size(); ++row) {
+      const double gap_s = time_s[row] - time_s[row - 1];
+      if (!(gap_s > kHides * usual_s)) continue;
+      ++gaps;
+      if (gap_s > longest_s) longest_s = gap_s, after_s = time_s[row - 1], step_s = usual_s, test = k + 1;
+    }
+  }
+  if (gaps == 0) return;
+  log.remarks.push_back(
+      count_of(gaps, "gap") + " between rows that are usually " + text::readable(step_s, "s") +
+      " apart: the longest, " + text::readable(longest_s, "s") + ", after " + text::readable(after_s, "s") +
+      (log.tests.size() > 1 ? " of test " + std::to_string(test) : "") + "; inputs are taken as ramps across them");
+}
+
 /// A file that is there may have been completed by hand: it is never written over.
 Status write_new(const std::string& file, const std::string& text) {
   std::FILE* stream = std::fopen(file.c_str(), "wx");
@@ -394,14 +417,19 @@ Result<const PlantDescription*> named_plant(const std::string& model) {
 
 /// Of "3/4/2031" nobody can tell whether it is in April or in March.
 void note_doubtful_date(Understood& log) {
-  const std::string& unit = log.map.columns.at("time").unit;
-  const std::vector<std::string>& cells = log.offer.cells[time_column(log.offer)];
-  const std::size_t day = unit.find("%d/%m/");
-  if (day == std::string::npos || cells.empty()) return;
-  std::string other = unit;
+  const ColumnMapping& time = log.map.columns.at("time");
+  const std::size_t day = time.unit.find("%d/%m/");
+  if (day == std::string::npos) return;
+  const std::size_t plus = time.column.find(kDayAndTime);
+  std::optional<std::size_t> apart;
+  if (plus != std::string::npos && !find_offered(log.offer.columns, time.column))
+    if (const Result<std::size_t> found = find_offered(log.offer.columns, time.column.substr(0, plus))) apart = *found;
+  const std::vector<std::string>& cells = log.offer.cells[apart ? *apart : time_column(log.offer)];
+  std::string other = time.unit;
   other.replace(day, 6, "%m/%d/");
-  const auto fits = [&](const std::string& cell) { return parse_pattern(cell, other).has_value(); };
-  if (std::ranges::all_of(cells, fits))
+  const std::string pattern = apart ? other.substr(0, other.find(' ')) : other;
+  const auto fits = [&](const std::string& cell) { return parse_pattern(cell, pattern).has_value(); };
+  if (!cells.empty() && std::ranges::all_of(cells, fits))
     log.remarks.push_back("the time " + printable(cells.front()) +
                           " is taken for day/month: where it is month/day, write '" + other + "' as its unit");
 }
@@ -461,6 +489,7 @@ Result<Understood> understand(const AssetNewOptions& options) {
   }
   if (const Status read = read_by_map(options.log, log); !read) return fail(read.error());
   note_switched_inputs(log);
+  note_gaps(log);
   note_doubtful_date(log);
   note_day_elsewhere(log);
   const Result<std::string> recorded = recorded_asset_id(options.log);

@@ -128,6 +128,10 @@ void add_by_unit_alone(const Offer& offer, const PlantDescription& plant, std::s
 
 }  // namespace
 
+bool is_named_like(const OfferedColumn& column, const ChannelDescription& channel) {
+  return likeness(tokens_of(split_header_cell(column.text).name), tokens_of(channel.name)) > 1.0;
+}
+
 std::string unit_for(const OfferedColumn& column, const ChannelDescription& channel) {
   const std::string said = unit_of(column);
   const bool plain = channel.unit.empty() || channel.unit == "1";

@@ -22,6 +22,9 @@ struct ChannelGuess {
 /// what is said is no unit: [on/off].
 [[nodiscard]] std::string unit_for(const OfferedColumn& column, const ChannelDescription& channel);
 
+/// Whether the column's name and the channel's share most of their words.
+[[nodiscard]] bool is_named_like(const OfferedColumn& column, const ChannelDescription& channel);
+
 /// Columns in a unit of the channel that no guess has taken, whatever they are called; without `time_column`.
 [[nodiscard]] std::vector<std::size_t> columns_of_unit(const Offer& offer, const ChannelDescription& channel,
                                                        std::size_t time_column,

@@ -14,6 +14,7 @@
 #include "services/common/recording/log_reader.hpp"
 #include "services/common/recording/mat_reader.hpp"
 #include "services/common/recording/recording_file.hpp"
+#include "services/common/recording/text_file.hpp"
 #include "services/common/recording/vector_file.hpp"
 #include "services/common/text/numbers.hpp"
 #include "services/common/units/unit_conversion.hpp"
@@ -24,8 +25,9 @@ namespace {
 constexpr std::size_t kRowsLookedAt = 50;
 
 Result<Offer> offer_of_text(const std::string& file, const LogLayout& given) {
-  Result<std::ifstream> in = open_file(file, kLargestRecording_bytes);
-  if (!in) return fail(in.error());
+  const Result<std::unique_ptr<std::istream>> text = open_text(file);
+  if (!text) return fail(text.error());
+  std::istream* const in = text->get();
   Result<FoundLayout> layout = layout_of(*in, given);
   if (!layout) return fail(layout.error());
   Offer offer;
@@ -108,8 +110,8 @@ std::optional<std::size_t> likely_time_column(const Offer& offer) {
   };
   const auto counts = [&](std::size_t k) { return has_numbers(offer, k) || !time_format_of(offer.cells[k]).empty(); };
   if (const auto named = first([&](std::size_t k) { return is_named(k) && counts(k); })) return named;
-  if (const auto named = first(is_named)) return named;  // its first cell is then what is refused
   if (const auto timed = first([&](std::size_t k) { return !time_format_of(offer.cells[k]).empty(); })) return timed;
+  if (const auto named = first(is_named)) return named;  // its first cell is then what is refused
   const auto in_time = [&](std::size_t k) { return !unit_of_time(offer.columns[k]).empty(); };
   const auto rising = [&](std::size_t k) {
     return has_numbers(offer, k) && rises(numbers_of(offer.cells[k], offer.layout.decimal));
@@ -160,9 +162,40 @@ bool has_time(const Offer& offer) { return likely_time_column(offer).has_value()
 
 std::size_t time_column(const Offer& offer) { return likely_time_column(offer).value_or(0); }
 
+namespace {
+
+/// The cells of a column of days before those of the time, of the rows that have both.
+std::vector<std::string> with_day(const Offer& offer, std::size_t day, std::size_t time) {
+  std::vector<std::string> cells;
+  for (std::size_t k = 0, d = 0; k < offer.rows[time].size(); ++k) {
+    while (d < offer.rows[day].size() && offer.rows[day][d] < offer.rows[time][k]) ++d;
+    if (d < offer.rows[day].size() && offer.rows[day][d] == offer.rows[time][k])
+      cells.push_back(offer.cells[day][d] + " " + offer.cells[time][k]);
+  }
+  return cells;
+}
+
+/// Adds the column of the day to a clock that tells none: the first that makes a date and a time of it.
+void add_day(const Offer& offer, std::size_t time, ColumnMapping& mapping) {
+  const Result<TimeFormat> format = TimeFormat::of(mapping.unit);
+  if (!format || !format->is_absolute() || format->has_date()) return;
+  for (std::size_t day = 0; day < offer.columns.size(); ++day) {
+    if (day == time || offer.rows[day].size() < offer.rows[time].size()) continue;
+    const std::string unit = time_format_of(with_day(offer, day, time));
+    if (unit.empty()) continue;
+    mapping.column = name_of_column(offer, day).append(kDayAndTime).append(mapping.column);
+    mapping.unit = unit;
+    return;
+  }
+}
+
+}  // namespace
+
 ColumnMapping guess_time(const Offer& offer) {
   const std::size_t at = time_column(offer);
-  return {.column = name_of_column(offer, at), .unit = time_unit(offer, at)};
+  ColumnMapping time{.column = name_of_column(offer, at), .unit = time_unit(offer, at)};
+  if (offer.text) add_day(offer, at, time);
+  return time;
 }
 
 }  // namespace sealwatch::cli

@@ -176,6 +176,8 @@ Result<UtcTime> TimeFormat::moment(std::string_view cell, char decimal) const {
   std::string text(trim(cell));
   for (char& letter : text)
     if (letter == ',') letter = '.';  // ISO 8601 allows both before fractions of a second
+  for (const std::string_view zone : {" UTC", " GMT"})
+    if (text.ends_with(zone)) text.replace(text.size() - zone.size(), zone.size(), "Z");
   return parse_utc(text);
 }
 
@@ -206,11 +208,17 @@ Status TimeFormat::scale_by(double scale, double offset) {
   return {};
 }
 
-/// A time counted from a test's start goes back by all of its length; by nearly a day goes the clock of a wall.
+/// A time counted from a test's start goes back by all of its length; by nearly a day, that is but for a step as the log
+/// has them, goes the clock of a wall.
 UtcTime TimeFormat::past_midnight(UtcTime time) {
-  constexpr std::int64_t kDay = 86400 * kNanoseconds, kLongestStep = 60 * kNanoseconds;
+  constexpr std::int64_t kDay = 86400 * kNanoseconds, kShortest = 60 * kNanoseconds;
   time.nanoseconds += midnights_ * kDay;
-  if (last_ && time.nanoseconds - last_->nanoseconds < kLongestStep - kDay) ++midnights_, time.nanoseconds += kDay;
+  if (last_) {
+    std::int64_t step = time.nanoseconds - last_->nanoseconds;
+    if (step < 0 && step + kDay < std::max(kShortest, 2 * longest_step_ns_))
+      ++midnights_, time.nanoseconds += kDay, step += kDay;
+    longest_step_ns_ = std::max(longest_step_ns_, step);
+  }
   last_ = time;
   return time;
 }

@@ -34,6 +34,8 @@ class TimeFormat {
 
   /// Whether it tells the hour and the day, so that the recording's start is known.
   [[nodiscard]] bool is_absolute() const { return kind_ != Kind::number; }
+  /// Whether it tells the day; of an absolute one.
+  [[nodiscard]] bool has_date() const;
   /// `scale` number + `offset` is in the format's unit: of a count of samples, say. An Error where it is a clock.
   [[nodiscard]] Status scale_by(double scale, double offset);
   /// Seconds of `cell`: as the log counts them; of an absolute time those since the first cell that was asked. A clock
@@ -49,7 +51,6 @@ class TimeFormat {
  private:
   enum class Kind { number, iso8601, excel, pattern };
   [[nodiscard]] Result<UtcTime> moment(std::string_view cell, char decimal) const;
-  [[nodiscard]] bool has_date() const;
   [[nodiscard]] UtcTime past_midnight(UtcTime time);
 
   Kind kind_ = Kind::number;
@@ -57,8 +58,9 @@ class TimeFormat {
   double days_before_excel_ = 0.0;
   std::string pattern_;
   std::optional<UtcTime> base_;
-  std::optional<UtcTime> last_;  ///< of a clock without a day
-  std::int64_t midnights_ = 0;   ///< that it has passed
+  std::optional<UtcTime> last_;       ///< of a clock without a day
+  std::int64_t longest_step_ns_ = 0;  ///< that it has made
+  std::int64_t midnights_ = 0;        ///< that it has passed
 };
 
 inline constexpr const char* kOneTime = "two times fall on one, as a number has no more than 16 digits";

@@ -74,8 +74,18 @@ class Mapper {
   }
 
   Status take_named(const std::string& channel, const ColumnMapping& mapping) {
-    const Result<std::size_t> index = find_offered(offered_, mapping.column);
+    const std::size_t plus = channel == "time" ? mapping.column.find(kDayAndTime) : std::string::npos;
+    Result<std::size_t> index = find_offered(offered_, mapping.column);
+    if (!index && plus != std::string::npos) {
+      const Result<std::size_t> day = find_offered(offered_, mapping.column.substr(0, plus));
+      if (!day) return fail(of_channel(channel, mapping.column, day.error()));
+      out_.day = *day;
+      used_.insert(*day);
+      index = find_offered(offered_, mapping.column.substr(plus + kDayAndTime.size()));
+    }
     if (!index) return fail(of_channel(channel, mapping.column, index.error()));
+    if (out_.day == *index)
+      return fail(error_at("channel time", mapping.column, "is one column twice", "give its name once"));
     const auto same = std::ranges::find(out_.columns, *index, &MappedColumn::index);
     if (same != out_.columns.end())
       return fail(error_at("channel " + channel, mapping.column,
@@ -162,7 +172,8 @@ std::string unit_of(const OfferedColumn& column) {
 std::string unit_at_the_end(std::string_view text, const std::string& si_unit) {
   const std::size_t begin = text.find_last_of(" _");
   const std::string_view last = begin == std::string_view::npos ? std::string_view() : text.substr(begin + 1);
-  const bool plain = si_unit.empty() || si_unit == "1", number = last == "%" || last == "counts" || last == "count";
+  const bool plain = si_unit.empty() || si_unit == "1",
+             number = last == "%" || last == "pct" || last == "counts" || last == "count";
   const bool fits = number || (!plain && last.size() > 1 && convert_unit(last, si_unit).has_value());
   return std::string(fits ? last : std::string_view());
 }

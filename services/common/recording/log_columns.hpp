@@ -19,6 +19,9 @@ struct OfferedColumn {
   std::string unit = {};  ///< said beside it, in a row of units or an attribute
 };
 
+/// Between the column of the day and that of the time, where a log has both apart: "Date + Time".
+inline constexpr std::string_view kDayAndTime = " + ";
+
 struct MappedColumn {
   std::size_t index = 0;  ///< of the offered columns
   Column column;          ///< of `time` to_si is not used: see `time_unit`
@@ -28,6 +31,7 @@ struct MappedColumns {
   std::vector<MappedColumn> columns;  ///< each channel once, `time` among them
   std::string time_unit;              ///< for TimeFormat, as are:
   double time_scale = 1.0, time_offset = 0.0;
+  std::optional<std::size_t> day;  ///< the offered column that stands before the time's cell, with a blank between
   std::vector<std::string> left_aside;
   std::vector<std::string> warnings = {};  ///< of columns whose unit is another in the map than in the log
 };

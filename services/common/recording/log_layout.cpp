@@ -25,16 +25,30 @@ constexpr std::array kDelimiters = {std::pair{"semicolon", ';'}, std::pair{"tab"
 constexpr std::array kDecimals = {std::pair{"point", '.'}, std::pair{"comma", ','}};
 
 // The day before the month: of "3/4/2031" nobody can tell, of "25/4/2031" and "4/25/2031" the cells do.
-constexpr std::array kTimePatterns = {"%d.%m.%Y %H:%M:%S",    "%d.%m.%Y %H:%M",    "%d/%m/%Y %H:%M:%S",
-                                      "%m/%d/%Y %I:%M:%S %p", "%m/%d/%Y %H:%M:%S", "%Y/%m/%d %H:%M:%S",
-                                      "%d-%b-%Y %H:%M:%S",    "%b %d %Y %H:%M:%S", "%H:%M:%S"};
+constexpr std::array kTimePatterns = {
+    "%d.%m.%Y %H:%M:%S", "%d.%m.%Y %H:%M",    "%d/%m/%Y %H:%M:%S", "%m/%d/%Y %I:%M:%S %p",
+    "%m/%d/%Y %H:%M:%S", "%Y/%m/%d %H:%M:%S", "%d-%b-%Y %H:%M:%S", "%b %d %Y %H:%M:%S",
+    "%d %b %Y %H:%M:%S", "%d.%m.%y %H:%M:%S", "%d/%m/%y %H:%M:%S", "%m/%d/%y %I:%M:%S %p",
+    "%m/%d/%y %H:%M:%S", "%Y%m%d %H%M%S",     "%H:%M:%S",          "%I:%M:%S %p"};
 
 using Rows = std::vector<std::vector<std::string>>;
 
+constexpr const char* kWithoutSigns = "%Y%m%d%H%M%S";
+
+/// "20310412030000.25": fourteen digits of a day in our time; a count since 1970 has thirteen, or is none of these.
+bool is_without_signs(std::string_view cell) {
+  const std::string_view text = trim(cell);
+  constexpr std::size_t kDigits = 14;
+  if (std::min(text.find_first_not_of("0123456789"), text.size()) != kDigits) return false;
+  const auto number = [text](std::size_t at) { return 10 * (text[at] - '0') + text[at + 1] - '0'; };
+  const bool day =
+      number(0) >= 19 && number(0) <= 20 && number(4) >= 1 && number(4) <= 12 && number(6) >= 1 && number(6) <= 31;
+  return day && number(8) < 24 && number(10) < 60 && number(12) < 60 && parse_pattern(text, kWithoutSigns).has_value();
+}
+
 bool is_iso(std::string_view cell) {
-  std::string text(trim(cell));
-  std::ranges::replace(text, ',', '.');
-  return text.size() > 10 && parse_utc(text).has_value();
+  const auto format = TimeFormat::of("iso8601");
+  return trim(cell).size() > 10 && TimeFormat(*format).seconds(cell, '.').has_value();
 }
 
 bool is_time(std::string_view cell) {
@@ -362,6 +376,7 @@ NameAndUnitText split_header_cell(std::string_view cell) {
 std::string time_format_of(const std::vector<std::string>& cells) {
   if (cells.empty()) return {};
   if (std::ranges::all_of(cells, is_iso)) return "iso8601";
+  if (std::ranges::all_of(cells, is_without_signs)) return kWithoutSigns;
   for (const char* pattern : kTimePatterns)
     if (std::ranges::all_of(cells, [&](const auto& cell) { return parse_pattern(cell, pattern).has_value(); }))
       return pattern;

@@ -107,7 +107,16 @@ class LogReader {
     return index < cells_.size() ? cells_[index] : std::string_view();
   }
 
+  /// What the time is read from: its cell, behind that of the day where this has its own.
+  [[nodiscard]] std::string_view time_cell() {
+    if (!mapped_.day) return cell(time_);
+    day_and_time_ = trim(*mapped_.day < cells_.size() ? cells_[*mapped_.day] : std::string_view());
+    day_and_time_.append(" ").append(trim(cell(time_)));
+    return day_and_time_;
+  }
+
   [[nodiscard]] bool is_incomplete() const {
+    if (mapped_.day && (*mapped_.day >= cells_.size() || holds_no_value(cells_[*mapped_.day]))) return true;
     for (std::size_t k = 0; k < mapped_.columns.size(); ++k)
       if (holds_no_value(cell(k))) return true;
     return false;
@@ -120,7 +129,7 @@ class LogReader {
                   rows_.has_line_break() ? "take the row out" : "the last line is cut off");
     if (k == time_ && values_[time_].empty() && trim(cell(k)).empty())
       return fail("the cell is empty", "export the log with its times, as LabVIEW does with one X column");
-    if (k == time_) return time_format_.seconds(cell(k), layout_.decimal);
+    if (k == time_) return time_format_.seconds(time_cell(), layout_.decimal);
     const Result<double> number = parse_number(cell(k), layout_.decimal);
     if (!number && holds_no_value(cell(k)))
       return fail(number.error().rule, "log: {incomplete_rows: skip} leaves such rows out");
@@ -188,7 +197,7 @@ class LogReader {
     const std::size_t index = mapped_.columns[k].index;
     return error_at("row " + std::to_string(rows_.row()) + ", column " + std::to_string(index + 1) + " (" +
                         printable(layout_.header[index]) + ", channel " + channel + ")",
-                    cell(k), std::move(rule), std::move(advice));
+                    k == time_ && mapped_.day ? day_and_time_ : cell(k), std::move(rule), std::move(advice));
   }
 
   CsvRows rows_;
@@ -198,6 +207,7 @@ class LogReader {
   MappedColumns mapped_;
   TimeFormat time_format_;
   std::vector<std::string_view> cells_;
+  std::string day_and_time_;
   std::vector<std::vector<double>> values_;  ///< of the test that is being read, by mapped column
   std::size_t time_ = 0;                     ///< index of time among the mapped columns
   std::size_t width_ = 0;                    ///< cells of the header
@@ -224,8 +234,6 @@ Result<FoundLayout> layout_of(std::istream& in, const LogLayout& given) {
     return fail(error_at("row 1, column 1", {}, "the row is longer than " + std::to_string(kHead_bytes) + " bytes",
                          "a log has rows that end in a line feed"));
   if (!whole) head.resize(head.rfind(line_break) + 1);  // the last row may be cut
-  if (head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF"))
-    return fail(error_at("row 1, column 1", {}, "the file is UTF-16 text", "save it as UTF-8"));
   return find_layout(head, given);
 }
 

@@ -16,6 +16,7 @@
 #include "services/common/recording/mat_reader.hpp"
 #include "services/common/recording/plausible_samples.hpp"
 #include "services/common/recording/sidecar.hpp"
+#include "services/common/recording/text_file.hpp"
 #include "services/common/recording/vector_file.hpp"
 #include "services/common/text/words.hpp"
 
@@ -75,8 +76,9 @@ bool is_in_own_format(const FoundLayout& layout, const ChannelMap& map) {
 }
 
 Result<Log> read_text(const std::string& path, const PlantDescription& plant, const ChannelMap& map) {
-  Result<std::ifstream> in = open_file(path, kLargestRecording_bytes);
-  if (!in) return fail(in.error());
+  const Result<std::unique_ptr<std::istream>> text = open_text(path);
+  if (!text) return fail(text.error());
+  std::istream* const in = text->get();
   const bool jumps = map.log.repeated_times == "jump";
   if (map.empty()) return one_test(read_csv(*in, plant, jumps), 2);
   const Result<FoundLayout> layout = layout_of(*in, map.log);

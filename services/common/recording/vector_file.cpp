@@ -51,6 +51,9 @@ Result<std::vector<std::vector<double>>> numbers_of(std::vector<MatVariable>& ve
     numbers.push_back(std::move(vector.values));
   }
   if (rows == 0) return fail(error_at("channel time", {}, "holds no samples"));
+  if (mapped.day)
+    return fail(error_at("channel time", vectors[*mapped.day].name, "is a day, which only logs of text have apart",
+                         "name one column"));
   for (std::size_t k = 0; k < numbers.size(); ++k)
     if (numbers[k].size() != rows)
       return fail(

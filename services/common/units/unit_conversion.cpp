@@ -38,7 +38,7 @@ constexpr std::array kAdditions = {
     Addition{"mmH2O", "9.80665 Pa"},  // water of 1000 kg/m3
     Addition{"inH2O", "249.08891 Pa"}, Addition{"rev", "cycle"}, Addition{"deg", "arc_degree"}, Addition{"RPM", "rpm"},
     Addition{"U/min", "rpm"}, Addition{"rev/min", "rpm"}, Addition{"Nm", "N m"}, Addition{"VDC", "V"},
-    Addition{"HP", "hp"}, Addition{"counts", "1"}, Addition{"count", "1"},
+    Addition{"HP", "hp"}, Addition{"counts", "1"}, Addition{"count", "1"}, Addition{"pct", "%"},
     // What loggers write, and UDUNITS takes for a charge, a capacitance, an angle or a mass.
     Addition{"C", "degC", "K"}, Addition{"F", "degF", "K"}, Addition{"deg C", "degC", "K"},
     Addition{"deg F", "degF", "K"}, Addition{"deg. C", "degC", "K"}, Addition{"deg. F", "degF", "K"},

@@ -112,15 +112,59 @@ TEST_F(AssetNew, ADateThatMayBeReadInTwoWaysIsRemarkedOn) {
   EXPECT_THAT(remark_of("25/4/2031"), testing::Not(testing::HasSubstr("day/month")));
 }
 
-TEST_F(AssetNew, ADayInAColumnOfItsOwnIsRemarkedOn) {
+TEST_F(AssetNew, ADayInAColumnOfItsOwnIsRead) {
   write_pump();
   testing::internal::CaptureStdout();
   EXPECT_EQ(make("Date;Time;opening;pressure [bar]\n25.04.2031;23:59:59;0,5;1\n26.04.2031;00:00:00;0,5;2\n",
                  path("pump.yaml")),
             kOk);
   EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              testing::AllOf(testing::HasSubstr("1 test of 2 samples"), testing::HasSubstr("Date + Time")));
+  const Result<AssetConfig> asset = load_asset(path("a.yaml"));
+  ASSERT_TRUE(asset) << asset.error().describe();
+  EXPECT_EQ(asset->channel_map.columns.at("time").column, "Date + Time");
+  const auto recording = read_recording(path("log.csv"), **find_plant(asset->model), asset->channel_map);
+  ASSERT_TRUE(recording) << recording.error().describe();
+  EXPECT_EQ(recording->samples.time_s.back(), 1.0);
+  EXPECT_EQ(format_utc(*recording->start_time), "2031-04-25T23:59:59Z");
+}
+
+// A column called by the day alone is not the time where another one has the clock.
+TEST_F(AssetNew, TheClockBesideADayIsTheTimeWhateverItIsCalled) {
+  write_pump();
+  ASSERT_EQ(make("Datum;Uhrzeit;opening;pressure [bar]\n25.04.2031;23:59:59;0,5;1\n26.04.2031;00:00:00;0,5;2\n",
+                 path("pump.yaml")),
+            kOk);
+  const Result<AssetConfig> asset = load_asset(path("a.yaml"));
+  ASSERT_TRUE(asset) << asset.error().describe();
+  EXPECT_EQ(asset->channel_map.columns.at("time").column, "Datum + Uhrzeit");
+}
+
+TEST_F(AssetNew, ADayThatIsNoneIsRemarkedOn) {
+  write_pump();
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(
+      make("Date;Time;opening;pressure [bar]\nMonday;23:59:59;0,5;1\nTuesday;00:00:00;0,5;2\n", path("pump.yaml")),
+      kOk);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
               testing::AllOf(testing::HasSubstr("1 test of 2 samples"),
                              testing::HasSubstr("the day in column Date is not read: give the test's start_time")));
+}
+
+TEST_F(AssetNew, GapsAreNamedWithTheLongest) {
+  write_pump();
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(make("t [s],opening,pressure [bar]\n0,1,1\n0.5,1,1\n1,1,1\n2,1,1\n2.5,1,1\n3,1,1\n9.5,1,1\n10,1,1\n",
+                 path("pump.yaml")),
+            kOk);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              testing::HasSubstr(
+                  "2 gaps between rows that are usually 0.500 s apart: the longest, 6.50 s, after 3.00 s; inputs "
+                  "are taken as ramps across them"));
+  std::filesystem::remove(path("a.yaml"));
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(make("t [s],opening,pressure [bar]\n0,1,1\n0.5,1,1\n1.1,1,1\n1.6,1,1\n", path("pump.yaml")), kOk);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(), testing::Not(testing::HasSubstr("gap")));
 }
 
 TEST_F(AssetNew, DaysAsMatlabCountsThemAreRecognised) {
@@ -343,7 +387,7 @@ TEST_F(AssetNew, DateAndTimeInTwoColumnsAndMissingValuesAreRead) {
             kOk);
   const Result<AssetConfig> asset = load_asset(path("a.yaml"));
   ASSERT_TRUE(asset) << asset.error().describe();
-  EXPECT_EQ(asset->channel_map.columns.at("time").column, "Time");
+  EXPECT_EQ(asset->channel_map.columns.at("time").column, "Date + Time");
   EXPECT_EQ(asset->channel_map.log.incomplete_rows, "skip");
   const auto recording = read_recording(path("log.csv"), **find_plant(asset->model), asset->channel_map);
   ASSERT_TRUE(recording) << recording.error().describe();

@@ -601,7 +601,14 @@ TEST(TimeFormatOf, IsRecognisedByTheCells) {
   EXPECT_EQ(time_format_of({"25.04.2031 03:00:00,5"}), "%d.%m.%Y %H:%M:%S");
   EXPECT_EQ(time_format_of({"4/25/2031 3:00:00 PM"}), "%m/%d/%Y %I:%M:%S %p");
   EXPECT_EQ(time_format_of({"4/25/2031 13:00:00"}), "%m/%d/%Y %H:%M:%S");
-  EXPECT_EQ(time_format_of({"0.5", "1"}), "");
+  EXPECT_EQ(time_format_of({"11:59:59.5 AM", "12:00:00 PM"}), "%I:%M:%S %p");
+  EXPECT_EQ(time_format_of({"25.04.31 03:00:00,5"}), "%d.%m.%y %H:%M:%S");
+  EXPECT_EQ(time_format_of({"04 Mar 2031 11:59:58.25"}), "%d %b %Y %H:%M:%S");
+  EXPECT_EQ(time_format_of({"2031-04-12 03:00:00.5 UTC"}), "iso8601");
+  EXPECT_EQ(time_format_of({"20310412 030000.5"}), "%Y%m%d %H%M%S");
+  EXPECT_EQ(time_format_of({"20310412030000.5", "20310412030001"}), "%Y%m%d%H%M%S");
+  for (const char* count : {"1772614800000", "1772614800000000", "20319912030000", "0.5"})
+    EXPECT_EQ(time_format_of({count}), "") << count;
 }
 
 }  // namespace

@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdio>
+
 #include "services/common/recording/recording_file.hpp"
 #include "tests/unit/recording/plant.hpp"
 
@@ -129,6 +132,24 @@ TEST_F(LoggerLayouts, AClockWithoutADayGoesOnPastMidnight) {
       << "more than a minute is no step: a count from the begin starts anew";
 }
 
+// A slow log's step over midnight is as long as its others; a gap over midnight is longer, and may as well be a restart.
+TEST_F(LoggerLayouts, ASlowClockPassesMidnightTooDayForDay) {
+  std::string text = "t;U [mV];x [mm]\n";
+  for (int row = 0; row < 200; ++row) {  // every 20 minutes from 23:50: nearly three days
+    const int minutes = (23 * 60 + 50 + 20 * row) % 1440;
+    std::array<char, 64> line{};
+    std::snprintf(line.data(), line.size(), "%02d:%02d:30;%d;60\n", minutes / 60, minutes % 60, row);
+    text += line.data();
+  }
+  EXPECT_THAT(error_of(text, map_of("t", "%H:%M:%S")), HasSubstr("row 3, column 1"))
+      << "no step before tells its length";
+  text.erase(text.find("23:50"), text.find("00:10") - text.find("23:50"));
+  const Recording recording = read(text, map_of("t", "%H:%M:%S"));
+  ASSERT_THAT(recording.samples.time_s, SizeIs(199));
+  for (std::size_t row = 0; row < 199; ++row)
+    EXPECT_NEAR(recording.samples.time_s[row], 1200.0 * static_cast<double>(row), 1e-6) << row;
+}
+
 TEST_F(LoggerLayouts, DaysOfMatlabAndTimesSinceADate) {
   const Recording days =
       read("t;U [mV];x [mm]\n736696.25;1;60\n736696.250005787;2;59\n736696.250011574;4;57\n", map_of("t", "datenum"));
@@ -141,6 +162,24 @@ TEST_F(LoggerLayouts, DaysOfMatlabAndTimesSinceADate) {
   EXPECT_EQ(format_utc(*since.start_time), "2031-04-12T03:00:00Z");
   EXPECT_THAT(error_of("t;U;x\n0;1;60\n1;1;60\n", map_of("t", "seconds since yesterday")),
               HasSubstr("must read as 'days since 2031-04-12'"));
+}
+
+// "Unicode text" of Windows' tools.
+TEST_F(LoggerLayouts, TextInUtf16IsRead) {
+  const std::u16string text = u"t [ms];U [mV];x [mm];Größe \U0001F600\r\n0;1;60;1\r\n500;2;59;1\r\n1000;4;57;1\r\n";
+  for (const bool little : {true, false}) {
+    std::string bytes = little ? "\xFF\xFE" : "\xFE\xFF";
+    for (const char16_t unit : text) {
+      const char low = static_cast<char>(unit & 0xFFU), high = static_cast<char>(unit >> 8U);
+      bytes += little ? low : high;
+      bytes += little ? high : low;
+    }
+    const Recording recording = read(bytes);
+    expect_three_rows(recording);
+    EXPECT_THAT(recording.left_aside, ElementsAre("Größe \U0001F600"));
+    EXPECT_THAT(error_of(bytes + "7"), HasSubstr("byte 135: is no UTF-16"));
+    EXPECT_THAT(error_of(bytes + (little ? "\x3D\xD8" : "\xD8\x3D")), HasSubstr("is no UTF-16"));
+  }
 }
 
 TEST_F(LoggerLayouts, FortransDoublePrecision) {

@@ -247,7 +247,8 @@ class Campaign:
         self.binaries = pathlib.Path(arguments.binaries).resolve()
         self.random = random.Random(arguments.seed)
         text = (SOURCE / "config/sealwatch.yaml").read_text()
-        (folder / "sealwatch.yaml").write_text(text.replace("domain: 0 ", f"domain: {DOMAIN} "))
+        alone = "\noperator_acts: {confirmed_by_second: false}\n"  # the campaign retracts and replaces by itself
+        (folder / "sealwatch.yaml").write_text(text.replace("domain: 0 ", f"domain: {DOMAIN} ") + alone)
         (folder / "assets").symlink_to(SOURCE / "config/assets")
         subprocess.run([self.binaries / "sealwatch", "simulate", "--asset", SOURCE / "config/assets/xt03-mv2.yaml",
                         # In twenty years a seal that ages fails and ends the life.

@@ -22,10 +22,12 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::SizeIs;
 
-/// The six services with three tests behind them.
+/// The six services with three tests behind them. One person is enough.
 class Operator : public SixServices {
  protected:
   void SetUp() override {
+    std::filesystem::copy(SixServices::config(), config(), std::filesystem::copy_options::recursive);
+    std::ofstream(config() + "/sealwatch.yaml", std::ios::app) << "\noperator_acts: {confirmed_by_second: false}\n";
     up_ = start({"sealwatch", "up", "--config", config(), "--state", state_directory("state").string()},
                 folder_ / "up.log");
     EXPECT_TRUE(takes_recordings());
@@ -34,6 +36,7 @@ class Operator : public SixServices {
     kill(up_, SIGTERM);
     waitpid(up_, nullptr, 0);
   }
+  [[nodiscard]] std::string config() const { return (folder_ / "alone").string(); }
   [[nodiscard]] Finished replay(const std::vector<std::string>& more = {}) const {
     std::vector<std::string> arguments = {"sealwatch", "replay", "--config", config(), "--quiet"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -479,13 +482,11 @@ TEST_F(Operator, ALostJournalHasBackWhatPeopleSaid) {
   EXPECT_THAT(lost, Contains(HasSubstr("but for the samples of earlier tests")));
 }
 
-/// Services that ask for a second person.
+/// As installed.
 TEST_F(Operator, CountsAReplacementOnceAnotherPersonConfirmsIt) {
   kill(up_, SIGTERM);
   waitpid(up_, nullptr, 0);
-  const std::string strict = (folder_ / "strict").string();
-  std::filesystem::copy(config(), strict, std::filesystem::copy_options::recursive);
-  std::ofstream(strict + "/sealwatch.yaml", std::ios::app) << "\noperator_acts: {confirmed_by_second: true}\n";
+  const std::string strict = SixServices::config();
   up_ = start({"sealwatch", "up", "--config", strict, "--state", state_directory("state").string()},
               folder_ / "strict.log");
   Finished said;

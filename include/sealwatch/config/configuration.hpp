@@ -78,9 +78,9 @@ struct Configuration {
   std::map<std::string, UtcTime> commissioned;  ///< by asset id, where it is known: no test is older
   std::vector<std::string> senders;             ///< sources of raw samples that are expected; none: all are
   RetentionConfig retention;
-  bool refuses_unknown_assets = false;    ///< that have no asset file; else some are taken (admission.hpp)
-  bool refuses_unknown_writers = true;    ///< of topics that only services write (stranger_watch.hpp)
-  bool acts_confirmed_by_second = false;  ///< what lowers an advisory counts once a second person confirms it
+  bool refuses_unknown_assets = false;   ///< that have no asset file; else some are taken (admission.hpp)
+  bool refuses_unknown_writers = true;   ///< of topics that only services write (stranger_watch.hpp)
+  bool acts_confirmed_by_second = true;  ///< what lowers an advisory counts once a second person confirms it
 
   [[nodiscard]] const AssetConfig* find_asset(const std::string& asset_id) const {
     for (const AssetConfig& asset : assets)

@@ -1,4 +1,4 @@
-// A second person's word: where the configuration asks for it (operator_acts.confirmed_by_second), what lowers an
+// A second person's word: unless the configuration asks for none (operator_acts.confirmed_by_second), what lowers an
 // advisory by somebody's act (a replacement, a retraction, an accepted model) counts once another one has confirmed it.
 // It travels as a maintenance_event of this kind, with who and when; its message_id says what is confirmed:
 //

@@ -134,17 +134,17 @@ const BadCase kBadCases[] = {
     {"asset_missing", "assets: [none.yaml]\n", "none.yaml: cannot be opened: No such file or directory"},
 };
 
-TEST(Configuration, NamesItsSendersAndAsksForASecondPersonWhereItSaysSo) {
+TEST(Configuration, NamesItsSendersAndAsksForNoSecondPersonWhereItSaysSo) {
   const YamlPlace place;
   const auto plain = load_configuration(place.write("sealwatch.yaml", "domain: 1\n"), {});
   ASSERT_TRUE(plain);
   EXPECT_TRUE(plain->senders.empty());
-  EXPECT_FALSE(plain->acts_confirmed_by_second) << "one-step commands go on working";
-  const auto strict = load_configuration(
-      place.write("sealwatch.yaml", "senders: [MCS-1, MCS-2]\noperator_acts: {confirmed_by_second: true}\n"), {});
-  ASSERT_TRUE(strict);
-  EXPECT_THAT(strict->senders, ElementsAre("MCS-1", "MCS-2"));
-  EXPECT_TRUE(strict->acts_confirmed_by_second);
+  EXPECT_TRUE(plain->acts_confirmed_by_second) << "what lowers an advisory takes two";
+  const auto alone = load_configuration(
+      place.write("sealwatch.yaml", "senders: [MCS-1, MCS-2]\noperator_acts: {confirmed_by_second: false}\n"), {});
+  ASSERT_TRUE(alone);
+  EXPECT_THAT(alone->senders, ElementsAre("MCS-1", "MCS-2"));
+  EXPECT_FALSE(alone->acts_confirmed_by_second);
 }
 
 TEST(Configuration, KeepsSamplesForEverUnlessItSaysOtherwise) {

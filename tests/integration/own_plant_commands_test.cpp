@@ -273,20 +273,22 @@ TEST_F(OwnPlantCommands, AnExportedUnitIsImportedAgainAndABadPlaceIsNamed) {
       run({"sealwatch", "plant", "export", "--asset", path("asset.yaml"), "--fmu", path("no such folder/valve.fmu")});
   EXPECT_EQ(nowhere.status, 2);
   EXPECT_THAT(nowhere.output, HasSubstr("no such folder"));
-  const Finished built_in = run({"sealwatch", "plant", "export", "--asset",
-                                 std::string(SEALWATCH_SOURCE_DIR) + "/config/assets/xt03-mv2.yaml", "--fmu", fmu});
-  EXPECT_EQ(built_in.status, 2);
-  EXPECT_THAT(built_in.output, HasSubstr("built in"));
+  const std::string built_in = std::string(SEALWATCH_SOURCE_DIR) + "/config/assets/xt03-mv2.yaml";
+  const Finished again = run({"sealwatch", "plant", "export", "--asset", built_in, "--fmu", fmu});
+  EXPECT_EQ(again.status, 2);
+  EXPECT_THAT(again.output, HasSubstr("is there already"));
+  const Finished other = run({"sealwatch", "plant", "export", "--asset", built_in, "--fmu", path("actuator.fmu")});
+  EXPECT_EQ(other.status, 0) << other.output;
 }
 
-// Lives that fall from 1 as 0.995 - 0.003 m - steepening, with a month missing here and there.
-std::string life(double rate, int tests) {
+// Lives that fall from 1 by `rate` a month, steepening, up and down by `scatter`.
+std::string life(double rate, int tests, double scatter = 0.0007) {
   std::ostringstream text;
   text << "time[iso8601],theta[1],theta_std[1]\n";
   for (int k = 0; k < tests; ++k) {
     char line[80];
     std::snprintf(line, sizeof line, "%d-%02d-10T00:00:00Z,%.6f,0.001\n", 2020 + k / 12, k % 12 + 1,
-                  1.0 - rate * (k + 1) * (1.0 + 0.004 * k) + 0.0007 * ((k * 7) % 5 - 2));
+                  1.0 - rate * (k + 1) * (1.0 + 0.004 * k) + scatter * ((k * 7) % 5 - 2));
     text << line;
   }
   return text.str();
@@ -316,12 +318,27 @@ TEST_F(OwnPlantCommands, AFleetsHistoriesGiveConstantsThatTheConfigurationTakes)
   EXPECT_EQ(result["lives"], 3);
   EXPECT_EQ(result["passed_over"], 1);
   EXPECT_GT(result["std_errors"]["initial_rate"].get<double>(), 0.0);
-  // Lives as regular as these tell no irregularity.
+  EXPECT_GT(result["std_errors"]["irregularity_std"].get<double>(), 0.0);
+  EXPECT_TRUE(result["limits"].empty());
+  EXPECT_GT(result["constants"]["initial_rate"].get<double>(), 0.0);
+}
+
+// Lives that are too regular tell no irregularity, but what it is at most.
+TEST_F(OwnPlantCommands, ARegularFleetHasALimitInPlaceOfAnIrregularity) {
+  std::vector<std::string> command = {"sealwatch",
+                                      "fleet",
+                                      "fit",
+                                      write("1.csv", life(0.0030, 80, 0.0)),
+                                      write("2.csv", life(0.0040, 70, 0.0)),
+                                      write("3.csv", life(0.0035, 60, 0.0))};
+  const Finished text = run(command);
+  ASSERT_EQ(text.status, 0) << text.output;
   EXPECT_THAT(text.output, HasSubstr("limit, 95 %"));
+  command.emplace_back("--json");
+  const json result = json::parse(run(command).output);
   EXPECT_TRUE(result["std_errors"]["irregularity_std"].is_null());
   ASSERT_EQ(result["limits"].size(), 1U);
   EXPECT_EQ(result["limits"][0]["name"], "irregularity_std");
-  EXPECT_GT(result["constants"]["initial_rate"].get<double>(), 0.0);
 }
 
 TEST_F(OwnPlantCommands, AFleetWithoutALongLifeOrWithTooFewDatesIsRefused) {

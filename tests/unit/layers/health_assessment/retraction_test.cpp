@@ -53,11 +53,7 @@ class Chain {
     Circumstances circumstances;
     circumstances.number = number;
     circumstances.asset_id = kAsset;
-    synthetic::Test made = synthetic::make(condition, circumstances);
-    for (Header* const header : {&made.window.header, &made.features.header}) {
-      header->pst_id += kEndOfMadeUpId;
-      header->message_id += kEndOfMadeUpId;
-    }
+    const synthetic::Test made = synthetic::make_up(condition, circumstances);
     take_in_health(made.window);
     take_in_health(made.features);
     take(made.window);

@@ -45,11 +45,7 @@ class Detection {
     Circumstances circumstances;
     circumstances.number = number;
     circumstances.asset_id = kAsset;
-    synthetic::Test made = synthetic::make(condition, circumstances);
-    for (Header* const header : {&made.window.header, &made.features.header}) {
-      header->pst_id += kEndOfMadeUpId;
-      header->message_id += kEndOfMadeUpId;
-    }
+    const synthetic::Test made = synthetic::make_up(condition, circumstances);
     take(made.window);
     return take(made.features);
   }

@@ -12,6 +12,7 @@
 #include "sealwatch/config/asset.hpp"
 #include "sealwatch/core/time.hpp"
 #include "sealwatch/message/data_manipulation.hpp"
+#include "sealwatch/message/made_up.hpp"
 
 namespace sealwatch::synthetic {
 
@@ -206,6 +207,16 @@ inline Test make(const Condition& c, const Circumstances& w) {
     if (has("flow")) add("leakage_resistance", (hold.dp + b) / (c.flow_gain * hold.q + c.flow_bias));
   }
   if (has("motor_current") && whole) add("peak_current", c.current_gain * back.i);
+  return test;
+}
+
+/// The same by the virtual bench.
+inline Test make_up(const Condition& condition, const Circumstances& circumstances) {
+  Test test = make(condition, circumstances);
+  for (Header* const header : {&test.window.header, &test.features.header}) {
+    header->pst_id += kEndOfMadeUpId;
+    header->message_id += kEndOfMadeUpId;
+  }
   return test;
 }
 

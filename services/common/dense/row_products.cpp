@@ -15,6 +15,7 @@ constexpr Eigen::Index kPanel = 8;  // columns side by side: one of the widest v
 #endif
 
 // a'b of two panels' columns, `Rows` columns of a by all of b, `Width` at a time: what fits a processor's registers.
+// Vectors are copied one by one: an array of them, copied at once, would stay in memory.
 template <int Rows, int Width>
 [[gnu::always_inline]] inline void panel_product(const double* a, const double* b, Eigen::Index rows, double* sums) {
   using Vector [[gnu::vector_size(Width * sizeof(double))]] = double;
@@ -22,13 +23,19 @@ template <int Rows, int Width>
   for (int first = 0; first < kPanel; first += Rows) {
     Vector sum[Rows][kVectors] = {};
     const double *left = a + first, *right = b;
-    for (Eigen::Index row = 0; row < rows; ++row, left += kPanel, right += kPanel) {
-      Vector of_right[kVectors];
-      __builtin_memcpy(of_right, right, sizeof(of_right));
-      for (int i = 0; i < Rows; ++i)
-        for (int v = 0; v < kVectors; ++v) sum[i][v] += left[i] * of_right[v];
-    }
-    __builtin_memcpy(sums + first * kPanel, sum, sizeof(sum));
+    for (Eigen::Index row = 0; row < rows; ++row, left += kPanel, right += kPanel)
+#pragma GCC unroll 8
+      for (int v = 0; v < kVectors; ++v) {
+        Vector of_right;
+        __builtin_memcpy(&of_right, right + v * Width, sizeof(of_right));
+#pragma GCC unroll 8
+        for (int i = 0; i < Rows; ++i) sum[i][v] += left[i] * of_right;
+      }
+#pragma GCC unroll 8
+    for (int i = 0; i < Rows; ++i)
+#pragma GCC unroll 8
+      for (int v = 0; v < kVectors; ++v)
+        __builtin_memcpy(sums + (first + i) * kPanel + v * Width, &sum[i][v], sizeof(Vector));
   }
 }
 

@@ -14,15 +14,18 @@ template <int Wide>
                                                  double* x, std::size_t stride) {
   WideVector sum[Wide], other;
   double* target = x + static_cast<std::size_t>(row) * stride;
+#pragma GCC unroll 4
   for (int v = 0; v < Wide; ++v) std::memcpy(&sum[v], target + v * kWidth, sizeof(other));
   for (int k = begin; k < end; ++k) {
     if (factors[k] == 0.0) continue;
     const double* from = x + static_cast<std::size_t>(k) * stride;
+#pragma GCC unroll 4
     for (int v = 0; v < Wide; ++v) {
       std::memcpy(&other, from + v * kWidth, sizeof(other));
       sum[v] -= factors[k] * other;
     }
   }
+#pragma GCC unroll 4
   for (int v = 0; v < Wide; ++v) {
     sum[v] *= by;
     std::memcpy(target + v * kWidth, &sum[v], sizeof(other));

@@ -9,13 +9,17 @@ here=$(cd "$(dirname "$0")" && pwd)
 loaded=(/usr/lib/*/libsoci_sqlite3.so.4.0 /usr/lib/*/libddsc0debian/libdds_security_*.so)  # at run time: no linker knows of them
 export LC_ALL=C
 
-# The package of each library that the programs are linked to, directly or not. /lib is /usr/lib where /usr is merged.
+# The package of each library that the programs are linked to, directly or not. dpkg is asked once, as it reads all its
+# lists each time; it may know a library by another name: /lib is /usr/lib where /usr is merged.
 linked() {
-  local file
-  { ldd "$@" "${loaded[@]}" | sed -nE 's/.*=> (\/[^ ]+) .*/\1/p'; printf '%s\n' "${loaded[@]}"; } | sort -u | while read -r file; do
-    dpkg-query -S "$file" 2>/dev/null || dpkg-query -S "/usr$file" 2>/dev/null ||
-      dpkg-query -S "$(readlink -f "$file")" 2>/dev/null || { echo "$0: $file belongs to no package" >&2; exit 1; }
-  done | sed -E 's/(:[a-z0-9]+)?: .*//' | sort -u
+  local files owned file in_usr meant
+  files=$({ ldd "$@" "${loaded[@]}" | sed -nE 's/.*=> (\/[^ ]+) .*/\1/p'; printf '%s\n' "${loaded[@]}"; } | sort -u |
+    while read -r file; do echo "$file /usr$file $(readlink -f "$file")"; done)
+  owned=$(xargs dpkg-query -S <<<"$files" 2>/dev/null || true)
+  while read -r file in_usr meant; do
+    grep -qF -e ": $file" -e ": $in_usr" -e ": $meant" <<<"$owned" || { echo "$0: $file belongs to no package" >&2; exit 1; }
+  done <<<"$files"
+  sed -E 's/(:[a-z0-9]+)?: .*//' <<<"$owned" | sort -u
 }
 
 built_with() {
@@ -37,7 +41,7 @@ relation() {  # FROM TYPE TO
 
 debian_package() {
   local found architecture
-  found=$(dpkg-query -W -f '${Version} ${Architecture}\n' "$1" | head -1)
+  found=${installed[$1]:?"$1 is not installed"}
   architecture=${found#* }
   package "$1" "${found% *}" 'Organization: Debian' NOASSERTION \
     "pkg:deb/debian/${1//+/%2B}@${found% *}?arch=$architecture"
@@ -46,6 +50,10 @@ debian_package() {
 libraries=$(linked "$@")
 mapfile -t runs_with <<<"$libraries"
 mapfile -t builds_with < <(comm -23 <(built_with) <(printf '%s\n' "${runs_with[@]}"))
+declare -A installed
+while read -r name found; do
+  : "${installed[$name]:=$found}"
+done < <(dpkg-query -W -f '${Package} ${Version} ${Architecture}\n' "${runs_with[@]}" "${builds_with[@]}")
 created=$(date -u -d "@${SOURCE_DATE_EPOCH:-$(date +%s)}" +%FT%TZ)
 packages=$(
   package sealwatch "$version" 'Organization: sealwatch contributors' Apache-2.0 ''

@@ -124,9 +124,15 @@ EOT
 check_sbom() {
   local sbom=$root/usr/share/doc/sealwatch/sbom.spdx.json
   [ -s "$sbom" ] || fail "there is no software bill of materials"
+  # dpkg knows a library with or without /usr, or what a link stands for; asked once, as it reads all its lists each time.
   ldd "$root"/usr/bin/* | sed -nE 's/.*=> (\/[^ ]+) .*/\1/p' | sort -u | while read -r file; do
-    dpkg-query -S "$file" 2>/dev/null || dpkg-query -S "/usr$file" 2>/dev/null || dpkg-query -S "$(readlink -f "$file")"
-  done | sed -E 's/:.*//' >"$scratch/libraries"
+    echo "$file /usr$file $(readlink -f "$file")"
+  done >"$scratch/files"
+  xargs dpkg-query -S <"$scratch/files" >"$scratch/owned" 2>/dev/null || true
+  while read -r file in_usr meant; do
+    grep -qF -e ": $file" -e ": $in_usr" -e ": $meant" "$scratch/owned" || fail "$file is of no package"
+  done <"$scratch/files"
+  sed -E 's/:.*//' "$scratch/owned" | sort -u >"$scratch/libraries"
   dpkg-deb -f "$scratch"/packages/sealwatch_*.deb Depends | tr ',' '\n' | grep -v '|' | awk '{ print $1 }' >>"$scratch/libraries"
   python3 - "$sbom" "$scratch/libraries" >"$scratch/sbom" 2>&1 <<'EOT' || fail "the software bill of materials is faulty" "$scratch/sbom"
 import json, re, subprocess, sys
@@ -143,13 +149,14 @@ for relation in bill["relationships"]:
         assert relation[end] in ids + ["SPDXRef-DOCUMENT"], relation
 runs_with = {r["relatedSpdxElement"] for r in bill["relationships"] if r["relationshipType"] == "DEPENDS_ON"}
 listed = {package["name"]: package for package in bill["packages"] if package["SPDXID"] in runs_with}
-def ask(name, field):
-    words = subprocess.run(["dpkg-query", "-W", "-f", "${%s}\n" % field, name], capture_output=True, text=True).stdout
-    return words.split("\n")[0]
-provided = {word.split()[0] for name in listed for word in ask(name, "Provides").split(",") if word.strip()}
+def ask(names):
+    words = subprocess.run(["dpkg-query", "-W", "-f", "${Package}\t${Version}\t${Provides}\n", *names], capture_output=True, text=True).stdout
+    return {package: (version, provides) for package, version, provides in (line.split("\t") for line in reversed(words.splitlines()))}
+installed = ask(listed)
+provided = {word.split()[0] for _, provides in installed.values() for word in provides.split(",") if word.strip()}
 for name in sorted(set(open(sys.argv[2]).read().split()) - provided):
     assert name in listed, name + " is not listed"
-    assert listed[name]["versionInfo"] == ask(name, "Version"), name + ": " + listed[name]["versionInfo"]
+    assert listed[name]["versionInfo"] == installed[name][0], name + ": " + listed[name]["versionInfo"]
 EOT
 }
 

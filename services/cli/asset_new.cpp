@@ -51,7 +51,7 @@ void set_layout(Understood& log) {
   if (!log.offer.text) return;
   const FoundLayout& found = log.offer.layout;
   log.map.log.delimiter = word_of(found.delimiter);
-  log.map.log.decimal = found.decimal == ',' ? "comma" : "point";
+  if (found.decimal_sign == DecimalSign::known) log.map.log.decimal = found.decimal == ',' ? "comma" : "point";
   log.map.log.header_row = static_cast<int>(found.header_row);
   log.map.log.units_row = static_cast<int>(found.units_row);
   log.map.log.first_row = static_cast<int>(found.first_row);
@@ -220,7 +220,8 @@ std::string layout_yaml(const Understood& log) {
   const LogLayout& layout = log.map.log;
   std::string out;
   if (log.offer.text) {
-    out += "  delimiter: " + layout.delimiter + "\n  decimal: " + layout.decimal + "\n";
+    out += "  delimiter: " + layout.delimiter + "\n";
+    if (!layout.decimal.empty()) out += "  decimal: " + layout.decimal + "\n";
     if (layout.header_row > 0) out += "  header_row: " + std::to_string(layout.header_row) + "\n";
     if (layout.units_row > 0) out += "  units_row: " + std::to_string(layout.units_row) + "\n";
     out += "  first_row: " + std::to_string(layout.first_row) + "\n";

@@ -15,6 +15,7 @@
 #include "services/common/recording/mat_reader.hpp"
 #include "services/common/recording/recording_file.hpp"
 #include "services/common/recording/text_file.hpp"
+#include "services/common/recording/thousands.hpp"
 #include "services/common/recording/vector_file.hpp"
 #include "services/common/text/numbers.hpp"
 #include "services/common/units/unit_conversion.hpp"
@@ -43,7 +44,8 @@ Result<Offer> offer_of_text(const std::string& file, const LogLayout& given) {
     std::vector<std::size_t>& stand_in = offer.rows.emplace_back();
     for (std::size_t row = 0; row < rows.size(); ++row) {
       if (k >= rows[row].size() || holds_no_value(rows[row][k])) continue;
-      cells.push_back(rows[row][k]);
+      const std::string& cell = rows[row][k];
+      cells.push_back(without_thousands(cell, offer.layout.decimal, offer.layout.decimal_sign).value_or(cell));
       stand_in.push_back(offer.layout.first_row + row);
     }
   }

@@ -76,18 +76,6 @@ bool holds_no_value(std::string_view cell) {
   return is_word || cell.find_first_of("0123456789") == std::string_view::npos;
 }
 
-bool has_thousands(std::string_view text, char decimal) {
-  constexpr std::size_t kGroup = 3;
-  const char separator = decimal == '.' ? ',' : '.';
-  const std::size_t last = text.rfind(separator);
-  if (last == std::string_view::npos) return false;
-  const std::string_view behind = trim(text.substr(last + 1));
-  if (std::min(behind.find(decimal), behind.size()) != kGroup) return false;
-  std::string without(text);
-  std::erase(without, separator);
-  return parse_number(without, decimal).has_value();
-}
-
 Result<double> parse_number(std::string_view text, char decimal) {
   text = trim(text);
   if (text.empty()) return fail("the cell is empty", "leave out the whole row of a missing sample");

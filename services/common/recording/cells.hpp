@@ -22,9 +22,6 @@ namespace sealwatch {
 /// one: #DIV/0! and 1.#INF.
 [[nodiscard]] bool holds_no_value(std::string_view cell);
 
-/// Whether `text` would be a number without its separators of thousands: 1,234.5 or, with a decimal comma, 1.234,5.
-[[nodiscard]] bool has_thousands(std::string_view text, char decimal);
-
 /// How a log's time column counts.
 class TimeFormat {
  public:

@@ -13,6 +13,7 @@
 #include "services/common/recording/columns.hpp"
 #include "services/common/recording/csv_rows.hpp"
 #include "services/common/recording/log_columns.hpp"
+#include "services/common/recording/thousands.hpp"
 #include "services/common/units/unit_conversion.hpp"
 
 namespace sealwatch {
@@ -57,14 +58,25 @@ bool is_time(std::string_view cell) {
          });
 }
 
-std::size_t values_in(const std::vector<std::string>& row, char decimal) {
-  return static_cast<std::size_t>(std::ranges::count_if(row, [decimal](const std::string& cell) {
-    const std::string_view text = trim(cell);
-    if (text.empty()) return false;
-    const bool begins_as_one = (text.front() >= '0' && text.front() <= '9') || text.front() == '-' ||
-                               text.front() == '+' || text.front() == '.';
-    return parse_number(text, decimal).has_value() || (begins_as_one && is_time(text));
-  }));
+/// How the numbers of a table are written.
+struct NumberForm {
+  char decimal = '.';
+  bool thousands = false;  ///< some are grouped
+};
+
+bool is_value(std::string_view cell, const NumberForm& form) {
+  const std::string_view text = trim(cell);
+  if (text.empty()) return false;
+  const bool begins_as_one =
+      (text.front() >= '0' && text.front() <= '9') || text.front() == '-' || text.front() == '+' || text.front() == '.';
+  return parse_number(text, form.decimal).has_value() ||
+         (form.thousands && without_thousands(text, form.decimal, DecimalSign::known)) ||
+         (begins_as_one && is_time(text));
+}
+
+std::size_t values_in(const std::vector<std::string>& row, const NumberForm& form) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(row, [&form](const std::string& cell) { return is_value(cell, form); }));
 }
 
 bool is_blank(const std::string& cell) { return trim(cell).empty(); }
@@ -73,35 +85,32 @@ bool is_blank(const std::string& cell) { return trim(cell).empty(); }
 enum class Expected { mostly_values, mostly_texts };
 
 /// Rows in which at least half of the cells that are not empty are numbers or times; two, where texts are expected.
-bool is_row_of_values(const std::vector<std::string>& row, char decimal, Expected expected) {
+bool is_row_of_values(const std::vector<std::string>& row, const NumberForm& form, Expected expected) {
   const auto filled = row.size() - static_cast<std::size_t>(std::ranges::count_if(row, is_blank));
-  const std::size_t values = values_in(row, decimal);
+  const std::size_t values = values_in(row, form);
   return filled >= 2 && (2 * values >= filled || (expected == Expected::mostly_texts && values >= 2));
 }
 
 struct Reading {
   Rows rows;  ///< from the file's first
   char delimiter;
-  char decimal;
+  NumberForm form;
   Expected expected;
   std::size_t width = 0;  ///< the commonest number of cells among rows of values
   std::size_t values = 0;
 };
 
-Reading read_as(std::string_view head, char delimiter, char decimal, Expected expected) {
-  Reading reading{.rows = rows_of(head, delimiter, 1, kRowsLookedAt),
-                  .delimiter = delimiter,
-                  .decimal = decimal,
-                  .expected = expected};
+Reading read_as(std::string_view head, char delimiter, const NumberForm& form, Expected expected) {
+  Reading reading{
+      .rows = rows_of(head, delimiter, 1, kRowsLookedAt), .delimiter = delimiter, .form = form, .expected = expected};
   std::map<std::size_t, std::size_t> widths;
   for (const auto& row : reading.rows)
-    if (is_row_of_values(row, decimal, expected)) ++widths[row.size()];
+    if (is_row_of_values(row, form, expected)) ++widths[row.size()];
   for (const auto& [width, count] : widths)  // of widths that are as common the largest: the other rows are cut
     if (reading.width == 0 || count >= widths[reading.width]) reading.width = width;
   if (widths.empty()) return reading;
   for (const auto& row : reading.rows)
-    if (row.size() == reading.width && is_row_of_values(row, decimal, expected))
-      reading.values += values_in(row, decimal);
+    if (row.size() == reading.width && is_row_of_values(row, form, expected)) reading.values += values_in(row, form);
   return reading;
 }
 
@@ -116,9 +125,9 @@ bool has_quoted_decimals(std::string_view head) {
   return false;
 }
 
-/// The best of all ways to read it; blanks only where nothing else makes a table.
-std::optional<Reading> best_reading(std::string_view head, const LogLayout& given, Expected expected) {
-  std::optional<Reading> best;
+/// Replaces `best` by what reads more values.
+void try_readings(std::string_view head, const LogLayout& given, Expected expected, bool thousands,
+                  std::optional<Reading>& best) {
   for (const auto& [delimiter_name, delimiter] : kDelimiters)
     for (const auto& [decimal_name, decimal] : kDecimals) {
       if (!given.delimiter.empty() && given.delimiter != delimiter_name) continue;
@@ -126,10 +135,26 @@ std::optional<Reading> best_reading(std::string_view head, const LogLayout& give
       const bool both = delimiter == ',' && decimal == ',';
       if (both && given.decimal.empty() && !has_quoted_decimals(head)) continue;
       if (delimiter == ' ' && given.delimiter.empty() && best) continue;
-      Reading reading = read_as(head, delimiter, decimal, expected);
+      Reading reading = read_as(head, delimiter, {.decimal = decimal, .thousands = thousands}, expected);
       if (reading.width > 0 && (!best || reading.values > best->values)) best = std::move(reading);
     }
+}
+
+/// The best of all ways to read it; blanks, and thousands apart, only where nothing else makes as good a table.
+std::optional<Reading> best_reading(std::string_view head, const LogLayout& given, Expected expected) {
+  std::optional<Reading> best;
+  try_readings(head, given, expected, false, best);
+  try_readings(head, given, expected, true, best);
   return best;
+}
+
+/// Whether a cell of the table shows which sign is the decimal one.
+bool shows_decimal(const Reading& reading) {
+  return std::ranges::any_of(reading.rows, [&](const std::vector<std::string>& row) {
+    return row.size() == reading.width && is_row_of_values(row, reading.form, reading.expected) &&
+           std::ranges::any_of(row,
+                               [&](const std::string& cell) { return shows_decimal_sign(cell, reading.form.decimal); });
+  });
 }
 
 std::string without_brackets(std::string_view text) {
@@ -151,14 +176,15 @@ std::vector<std::string> without_name_of_units(std::vector<std::string> row) {
 }
 
 /// Whether all cells are units; or, where a name stands above each, most of them: "hh:mm:ss" is none.
-bool is_row_of_units(const std::vector<std::string>& row, const std::vector<std::string>& above, char decimal) {
+bool is_row_of_units(const std::vector<std::string>& row, const std::vector<std::string>& above,
+                     const NumberForm& form) {
   std::size_t filled = 0, units = 0, named = 0;
   for (std::size_t k = 0; k < row.size(); ++k) {
     const std::string unit = without_brackets(row[k]);
     if (unit.empty()) continue;
     ++filled;
     units += is_unit(unit) ? 1 : 0;
-    named += k < above.size() && !is_blank(above[k]) && !parse_number(above[k], decimal) ? 1 : 0;
+    named += k < above.size() && !is_blank(above[k]) && !is_value(above[k], form) ? 1 : 0;
   }
   return filled > 0 && (units == filled || (2 * units > filled && named == filled));
 }
@@ -199,7 +225,7 @@ void find_header(const Reading& reading, const LogLayout& given, FoundLayout& ou
     if (number <= least || row(number).size() <= 1) return false;
     const std::size_t names = filled_row(number - 1);
     return is_row_of_units(without_name_of_units(row(number)), names > 0 ? row(names) : std::vector<std::string>(),
-                           reading.decimal);
+                           reading.form);
   };
   if (out.units_row == 0 && are_units(above)) out.units_row = above;
   const std::size_t next = above > 1 ? filled_row(above - 1) : 0, names = next > 1 ? filled_row(next - 1) : 0;
@@ -211,7 +237,7 @@ void find_header(const Reading& reading, const LogLayout& given, FoundLayout& ou
   if (out.units_row > 0 || out.header_row < 2) return;
   const std::size_t over = filled_row(out.header_row - 1);  // units may stand over the names as well as under them
   const bool is_as_wide = over > 0 && row(over).size() == reading.width;
-  if (is_as_wide && is_row_of_units(without_name_of_units(row(over)), {}, reading.decimal)) out.units_row = over;
+  if (is_as_wide && is_row_of_units(without_name_of_units(row(over)), {}, reading.form)) out.units_row = over;
   if (out.units_row == 0) out.units_row = row_called_units(reading, out.header_row);
 }
 
@@ -229,13 +255,13 @@ class NamedRows {
     are_few_ = 2 * named < rows || !is_last_named;  // a short table has fewer rows than its preamble
   }
   [[nodiscard]] bool is_of_table(const std::vector<std::string>& row) const {
-    return row.size() == reading_.width && is_row_of_values(row, reading_.decimal, reading_.expected);
+    return row.size() == reading_.width && is_row_of_values(row, reading_.form, reading_.expected);
   }
   [[nodiscard]] bool is_one(const std::vector<std::string>& row) const { return are_few_ && begins_with_text(row); }
 
  private:
   [[nodiscard]] bool begins_with_text(const std::vector<std::string>& row) const {
-    return !is_blank(row.front()) && values_in({row.front()}, reading_.decimal) == 0;
+    return !is_blank(row.front()) && values_in({row.front()}, reading_.form) == 0;
   }
   const Reading& reading_;
   bool are_few_ = false;
@@ -251,7 +277,7 @@ std::size_t find_first_row(const Reading& reading, std::size_t least) {
     const std::vector<std::string>& row = reading.rows[k];
     if (!named.is_of_table(row)) {
       const auto filled = row.size() - static_cast<std::size_t>(std::ranges::count_if(row, is_blank));
-      names_follow = names_follow || (first_named > 0 && filled > 1 && values_in(row, reading.decimal) == 0);
+      names_follow = names_follow || (first_named > 0 && filled > 1 && values_in(row, reading.form) == 0);
     } else if (!named.is_one(row)) {
       return first_named > 0 && !names_follow ? first_named : k + 1;
     } else if (first_named == 0) {
@@ -322,7 +348,8 @@ Result<FoundLayout> find_layout(std::string_view head, const LogLayout& given) {
     return fail(error_at("row 1, column 1", head.substr(0, head.find('\n')),
                          "no table of numbers follows within " + std::to_string(kRowsLookedAt) + " rows",
                          "say how the log is written, under log: delimiter, decimal, header_row"));
-  FoundLayout out{.delimiter = reading->delimiter, .decimal = reading->decimal, .header = {}, .units = {}};
+  FoundLayout out{.delimiter = reading->delimiter, .decimal = reading->form.decimal, .header = {}, .units = {}};
+  if (!given.decimal.empty() || shows_decimal(*reading)) out.decimal_sign = DecimalSign::known;
   out.first_row = static_cast<std::size_t>(given.first_row);
   const auto least = static_cast<std::size_t>(std::max(given.header_row, given.units_row));
   if (out.first_row == 0) out.first_row = find_first_row(*reading, least);

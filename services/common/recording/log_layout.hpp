@@ -12,12 +12,14 @@
 
 #include "sealwatch/config/channel_map.hpp"
 #include "sealwatch/core/result.hpp"
+#include "services/common/recording/thousands.hpp"
 
 namespace sealwatch {
 
 struct FoundLayout {
   char delimiter = ',';
   char decimal = '.';
+  DecimalSign decimal_sign = DecimalSign::likely;
   std::size_t header_row = 1;  ///< 0: none, columns are then called "column 1", "column 2"
   std::size_t units_row = 0;   ///< 0: none
   std::size_t first_row = 2;

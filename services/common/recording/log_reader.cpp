@@ -9,6 +9,7 @@
 #include "services/common/recording/log_columns.hpp"
 #include "services/common/recording/recording_file.hpp"
 #include "services/common/recording/repeated_times.hpp"
+#include "services/common/recording/thousands.hpp"
 #include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
@@ -122,6 +123,14 @@ class LogReader {
     return false;
   }
 
+  Result<double> seconds_at() {
+    Result<double> seconds = time_format_.seconds(time_cell(), layout_.decimal);
+    if (!seconds && !mapped_.day)
+      if (const auto plain = without_thousands(cell(time_), layout_.decimal, layout_.decimal_sign))
+        seconds = time_format_.seconds(*plain, layout_.decimal);
+    return seconds;
+  }
+
   Result<double> number_at(std::size_t k) {
     if (mapped_.columns[k].index >= cells_.size())
       return fail("the row has " + std::to_string(cells_.size()) + " cells and this is column " +
@@ -129,12 +138,15 @@ class LogReader {
                   rows_.has_line_break() ? "take the row out" : "the last line is cut off");
     if (k == time_ && values_[time_].empty() && trim(cell(k)).empty())
       return fail("the cell is empty", "export the log with its times, as LabVIEW does with one X column");
-    if (k == time_) return time_format_.seconds(time_cell(), layout_.decimal);
-    const Result<double> number = parse_number(cell(k), layout_.decimal);
+    if (k == time_) return seconds_at();
+    Result<double> number = parse_number(cell(k), layout_.decimal);
     if (!number && holds_no_value(cell(k)))
       return fail(number.error().rule, "log: {incomplete_rows: skip} leaves such rows out");
-    if (!number && has_thousands(cell(k), layout_.decimal))
-      return fail(number.error().rule, "export the log without separators of thousands");
+    if (!number)
+      if (const auto plain = without_thousands(cell(k), layout_.decimal, layout_.decimal_sign))
+        number = parse_number(*plain, layout_.decimal);
+    if (!number && without_thousands(cell(k), layout_.decimal, DecimalSign::known))
+      return fail("may be a number with thousands or with decimals", "log: {decimal: point} or {decimal: comma}");
     if (!number) return fail(number.error().rule, number.error().advice);
     const double value = mapped_.columns[k].column.to_si.to_si(*number);
     return std::isfinite(value) ? Result<double>(value) : fail("is out of a double's range");

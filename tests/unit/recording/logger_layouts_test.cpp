@@ -209,5 +209,46 @@ TEST_F(LoggerLayouts, WordsForNoValueHaveDigitsToo) {
   }
 }
 
+/// 1234.5, 2345.25 and 3456.75 mV; 0, 1500 and 3000 ms.
+void expect_thousands(const Recording& recording) {
+  EXPECT_THAT(recording.samples.time_s, ElementsAre(0.0, 1.5, 3.0));
+  ASSERT_TRUE(recording.samples.has("motor_voltage"));
+  EXPECT_THAT(recording.samples.find("motor_voltage")->values,
+              ElementsAre(DoubleEq(1.2345), DoubleEq(-2.34525), DoubleEq(3.45675)));
+}
+
+TEST_F(LoggerLayouts, ThousandsMayBeSeparated) {
+  const std::string head = "t [ms];U [mV];x [mm]\n";
+  for (const char* rows : {"0;1,234.5;60\n1,500.0;-2,345.25;59\n3,000.0;3,456.75;57\n",
+                           "0,0;1.234,5;60,0\n1.500,0;-2.345,25;59,0\n3.000,0;3.456,75;57,0\n",
+                           "0;1'234.5;60\n1'500;\xE2\x88\x92"
+                           "2'345.25;59\n3'000;3'456.75;57\n",
+                           "0;1 234,5;60\n1 500;-2 345,25;59\n3 000;3 456,75;57\n",
+                           "0;1\xE2\x80\xAF"
+                           "234,5;60\n1\xC2\xA0"
+                           "500;-2\xA0"
+                           "345,25;59\n3\xE2\x80\x89"
+                           "000;3\xE2\x80\x99"
+                           "456,75;57\n"})
+    expect_thousands(read(head + rows));
+  expect_thousands(
+      read("\"t [ms]\",\"U [mV]\",\"x "
+           "[mm]\"\n\"0\",\"1,234.5\",\"60\"\n\"1,500\",\"-2,345.25\",\"59\"\n\"3,000\",\"3,456.75\",\"57\"\n"));
+}
+
+// "1,234" is one thousand or one: only the other cells, or the map, tell.
+TEST_F(LoggerLayouts, ACommaThatMayBeEitherIsRefusedUnlessTheDecimalSignIsKnown) {
+  const std::string text = "t [ms];U [mV];x [mm]\n0;1;60\n500;2;59\n1,000;4;57\n";
+  EXPECT_THAT(error_of("t [ms];U [mV];x [mm]\n0;1;60\n500;1,234;59\n1000;4;57\n"), HasSubstr("row 3, column 2"));
+  EXPECT_THAT(error_of(text), HasSubstr("log: {decimal: point} or {decimal: comma}"));
+  ChannelMap map = map_of("t", "");
+  map.log.decimal = "point";
+  expect_three_rows(read(text, map));
+  expect_three_rows(read("t [ms];U [mV];x [mm]\n0;1;60.0\n500;2;59.0\n1,000;4;57.0\n"));
+  const Recording decimals = read("t [ms];U [mV];x [mm]\n0;1,234;60,000\n500;2,345;59,000\n1000;4,567;57,000\n");
+  EXPECT_THAT(decimals.samples.find("motor_voltage")->values,
+              ElementsAre(DoubleEq(0.001234), DoubleEq(0.002345), DoubleEq(0.004567)));
+}
+
 }  // namespace
 }  // namespace sealwatch

@@ -134,6 +134,7 @@ std::string left_aside(const Understood& log) {
 std::string mapping_text(const ColumnMapping& mapping) {
   std::string text = "{column: " + text::quoted(mapping.column);
   if (!mapping.unit.empty()) text += ", unit: " + text::quoted(mapping.unit);
+  if (mapping.is_scaled) text += ", scale: " + number(mapping.scale);
   return text + "}";
 }
 
@@ -207,6 +208,28 @@ std::string doubt(const Understood& log, const ChannelDescription& channel) {
     return "the log gives no unit: taken for " + channel.unit + ", check it";
   }
   return guess->sure ? "" : "uncertain, check it";
+}
+
+/// Of a log whose names say nothing, CH1, CH2: its columns, and for each channel the line to complete.
+Error nothing_like_a_channel(const Understood& log, const std::string& file) {
+  constexpr std::size_t kMostNamed = 30;
+  std::vector<std::string> columns, lines;
+  for (const OfferedColumn& column : log.offer.columns | std::views::take(kMostNamed)) columns.push_back(column.text);
+  if (log.offer.columns.size() > kMostNamed)
+    columns.push_back("and " + std::to_string(log.offer.columns.size() - kMostNamed) + " more");
+  lines.push_back("time: " + mapping_text(log.map.columns.at("time")));
+  for (const ChannelDescription& channel : log.plant->channels) {
+    const std::string line = by_hand(log, channel);
+    lines.push_back(channel.name + ": " + line.substr(line.starts_with("as ") ? 3 : 0));
+  }
+  return Error{.file = file,
+               .place = {},
+               .value = {},
+               .rule = "no column looks like a channel of plant " + log.plant->name,
+               .advice =
+                   "write the map by hand (docs/logs.md), or name another plant with --model; the log's columns "
+                   "are " +
+                   text::separated(columns, ", ") + "; under channels: " + text::separated(lines, "; ")};
 }
 
 /// Whose asset it is: as given, as the log's sidecar says, else the log's name.
@@ -384,6 +407,36 @@ void note_gaps(Understood& log) {
       (log.tests.size() > 1 ? " of test " + std::to_string(test) : "") + "; inputs are taken as ramps across them");
 }
 
+/// A number that stands in several rows, farther from all others than they are from each other: for no value, as -9999.
+std::optional<std::size_t> rows_of_fill_value(const Series& channel, double& fill) {
+  constexpr double kFar = 10.0;  // ranges of the other numbers
+  for (const bool lowest : {true, false}) {
+    const auto [low, high] = std::ranges::minmax(channel.values);
+    fill = lowest ? low : high;
+    double least = lowest ? high : low, most = least;
+    std::size_t rows = 0;
+    for (const double value : channel.values)
+      if (value == fill)
+        ++rows;
+      else
+        least = std::min(least, value), most = std::max(most, value);
+    const double distance = lowest ? least - fill : fill - most;
+    if (rows > 1 && rows < channel.values.size() / 2 && most > least && distance > kFar * (most - least)) return rows;
+  }
+  return std::nullopt;
+}
+
+void note_fill_values(Understood& log) {
+  for (const Series& channel : log.tests.front().samples.channels) {
+    double fill = 0.0;
+    if (const auto rows = rows_of_fill_value(channel, fill))
+      log.remarks.push_back(channel.name + " is " + text::readable(fill, channel.unit) + " in " +
+                            count_of(*rows, "row") +
+                            ", far from all others: where that stands for no value, empty "
+                            "those cells, and log: {incomplete_rows: skip}");
+  }
+}
+
 /// A file that is there may have been completed by hand: it is never written over.
 Status write_new(const std::string& file, const std::string& text) {
   std::FILE* stream = std::fopen(file.c_str(), "wx");
@@ -454,8 +507,8 @@ Result<Understood> understand(const AssetNewOptions& options) {
                       .place = {},
                       .value = {},
                       .rule = "no column is a time: none is called so, holds clocks or rises from row to row",
-                      .advice = "export the log with its time, or with a count of samples: time: {column: N, unit: s, "
-                                "scale: SECONDS_BETWEEN_SAMPLES}"});
+                      .advice = "write the map by hand (docs/logs.md): of rows a fixed time apart it is "
+                                "time: {column: row, unit: s, scale: SECONDS_BETWEEN_ROWS}"});
   Understood log;
   log.offer = std::move(*offer);
   log.map.columns["time"] = guess_time(log.offer);
@@ -467,30 +520,20 @@ Result<Understood> understand(const AssetNewOptions& options) {
   if (options.model.empty())
     log.remarks.push_back("plant " + log.plant->name +
                           " is a guess, the built-in plant that fits best; for your own plant give --model FILE.yaml");
-  if (log.map.columns["time"].unit == "s" && unit_of(log.offer.columns[time]).empty())
+  if (time == kNoColumn)
+    log.remarks.push_back("no column holds times: the rows are taken as " +
+                          text::readable(log.map.columns["time"].scale, "s") + " apart, as the log's head says");
+  else if (log.map.columns["time"].unit == "s" && unit_of(log.offer.columns[time]).empty())
     log.remarks.emplace_back("the log gives no unit for the time: taken for s");
   log.guesses = guess_channels(log.offer, *log.plant, time);
   if (!options.yes && isatty(STDIN_FILENO) != 0) ask(log);
   set_layout(log);
   set_columns(log);
-  if (log.guesses.empty()) {
-    std::vector<std::string> names, columns;
-    for (const ChannelDescription& channel : log.plant->channels) names.push_back(channel.name);
-    constexpr std::size_t kMostNamed = 30;
-    for (const OfferedColumn& column : log.offer.columns | std::views::take(kMostNamed)) columns.push_back(column.text);
-    if (log.offer.columns.size() > kMostNamed)
-      columns.push_back("and " + std::to_string(log.offer.columns.size() - kMostNamed) + " more");
-    return fail(Error{
-        .file = options.log,
-        .place = {},
-        .value = {},
-        .rule = "no column looks like a channel of plant " + log.plant->name,
-        .advice = "write the map by hand (docs/logs.md), or name another plant with --model; the log's columns are " +
-                  text::separated(columns, ", ") + "; " + suggest("", names)});
-  }
+  if (log.guesses.empty()) return fail(nothing_like_a_channel(log, options.log));
   if (const Status read = read_by_map(options.log, log); !read) return fail(read.error());
   note_switched_inputs(log);
   note_gaps(log);
+  note_fill_values(log);
   note_doubtful_date(log);
   note_day_elsewhere(log);
   const Result<std::string> recorded = recorded_asset_id(options.log);

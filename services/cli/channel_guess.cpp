@@ -81,13 +81,23 @@ bool within_range(const Offer& offer, std::size_t column, const ChannelDescripti
   });
 }
 
-double score_of_name(const OfferedColumn& column, const ChannelDescription& channel) {
+/// "CH2" for pressure_b: a letter or a number tells apart what a word, a quantity or a unit says, and says nothing alone.
+bool share_but_a_letter(const std::vector<std::string>& column, const std::vector<std::string>& channel) {
+  const auto is_shared = [&](const std::string& word) {
+    return std::ranges::any_of(column, [&](const std::string& other) { return same_word(word, other); });
+  };
+  return channel.size() > 1 &&
+         std::ranges::none_of(channel, [&](const auto& word) { return word.size() > 1 && is_shared(word); });
+}
+
+double score_of_name(const OfferedColumn& column, const ChannelDescription& channel, bool has_unit) {
   constexpr double kName = 2.0, kQuantity = 1.0;
   const std::vector<std::string> words = tokens_of(split_header_cell(column.text).name);
   const auto known = vocabulary().find(channel.unit.empty() ? "1" : channel.unit);
   const bool quantity = known != vocabulary().end() && std::ranges::any_of(words, [&](const std::string& word) {
                           return known->second.contains(word);
                         });
+  if (!quantity && !has_unit && share_but_a_letter(words, tokens_of(channel.name))) return 0.0;
   return kName * likeness(words, tokens_of(channel.name)) + (quantity ? kQuantity : 0.0);
 }
 
@@ -98,7 +108,7 @@ double score_of(const Offer& offer, std::size_t column, const ChannelDescription
   const Result<UnitConversion> to_si = convert_unit(unit, si);
   if (!to_si) return 0.0;
   if (!has_numbers(offer, column)) return 0.0;
-  const double score = score_of_name(offer.columns[column], channel);
+  const double score = score_of_name(offer.columns[column], channel, !unit.empty());
   if (score <= 0.0) return 0.0;
   return score + (unit.empty() || si == "1" ? 0.0 : kUnit) +
          (within_range(offer, column, channel, *to_si) ? kRange : 0.0);
@@ -160,7 +170,7 @@ std::vector<std::size_t> plain_columns(const Offer& offer, const ChannelDescript
     if (convert_unit(unit, "1") && has_numbers(offer, column)) columns.push_back(column);
   }
   std::ranges::stable_sort(columns, std::greater{},
-                           [&](std::size_t column) { return score_of_name(offer.columns[column], channel); });
+                           [&](std::size_t column) { return score_of_name(offer.columns[column], channel, true); });
   return columns;
 }
 

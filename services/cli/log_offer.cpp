@@ -25,6 +25,43 @@ namespace {
 
 constexpr std::size_t kRowsLookedAt = 50;
 
+std::string without_signs(std::string_view text) {
+  std::string out;
+  for (const char letter : text)
+    if (std::isalpha(static_cast<unsigned char>(letter)) != 0)
+      out += static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  return out;
+}
+
+/// Seconds between two rows as a preamble says it, "Delta_X  0.01", "Sample rate: 100", "Sample Interval [ms],10"; nothing
+/// where it does not, or says two.
+std::optional<double> step_in_preamble(const std::vector<std::vector<std::string>>& rows, char decimal) {
+  static const std::set<std::string> kSteps = {"deltax",         "dt",         "deltat",    "sampleinterval",
+                                               "hresolution",    "xincrement", "increment", "samplinginterval",
+                                               "sampleperiod",   "sampletime", "timestep",  "abtastintervall",
+                                               "samplingperiod", "xinc",       "xincr",     "intervall"};
+  static const std::set<std::string> kRates = {
+      "samplerate", "samplingrate", "samplefrequency", "abtastrate", "samplingfrequency", "rate", "fs", "scanrate"};
+  std::set<double> steps;
+  for (const auto& row : rows) {
+    if (row.empty()) continue;
+    const std::string& first = row.front();
+    const std::size_t sign = std::min(first.find_first_of("=:"), first.size());
+    const bool is_one_cell = sign + 1 < first.size();  // "DT=0.01"
+    const auto [name, unit] = split_header_cell(first.substr(0, sign));
+    const bool is_step = kSteps.contains(without_signs(name));
+    if (!is_step && !kRates.contains(without_signs(name))) continue;
+    const Result<double> number = parse_number(is_one_cell      ? first.substr(sign + 1)
+                                               : row.size() > 1 ? row[1]
+                                                                : "",
+                                               decimal);
+    const Result<UnitConversion> to_si = convert_unit(unit, is_step ? "s" : "Hz");
+    if (!number || !to_si || *number <= 0.0) continue;
+    steps.insert(is_step ? *number * to_si->scale : 1.0 / (*number * to_si->scale));
+  }
+  return steps.size() == 1 ? std::optional(*steps.begin()) : std::nullopt;
+}
+
 Result<Offer> offer_of_text(const std::string& file, const LogLayout& given) {
   const Result<std::unique_ptr<std::istream>> text = open_text(file);
   if (!text) return fail(text.error());
@@ -38,6 +75,8 @@ Result<Offer> offer_of_text(const std::string& file, const LogLayout& given) {
   head.resize(static_cast<std::size_t>(in->gcount()));
   if (!in->eof()) head.resize(head.rfind(line_break_of(head)) + 1);
   const auto rows = rows_of(head, offer.layout.delimiter, offer.layout.first_row, kRowsLookedAt);
+  offer.step_s =
+      step_in_preamble(rows_of(head, offer.layout.delimiter, 1, offer.layout.first_row - 1), offer.layout.decimal);
   for (std::size_t k = 0; k < offer.layout.header.size(); ++k) {
     offer.columns.push_back({offer.layout.header[k], offer.layout.units[k]});
     std::vector<std::string>& cells = offer.cells.emplace_back();
@@ -99,9 +138,27 @@ std::string unit_of_time(const OfferedColumn& column) {
   return "";
 }
 
+/// A column of fractions of a second, as "ms" beside a clock of whole seconds: its unit is less, its numbers stay below.
+bool holds_fractions(const Offer& offer, std::size_t column) {
+  const std::optional<double> to_s = seconds_of_one(offer.columns[column]);
+  const std::vector<double> numbers = numbers_of(offer.cells[column], offer.layout.decimal);
+  return to_s && *to_s < 1.0 && has_numbers(offer, column) &&
+         std::ranges::all_of(numbers, [&](double number) { return number >= 0.0 && number * *to_s < 1.0; });
+}
+
+/// A column of whole seconds, or of more, beside one of fractions.
+std::optional<std::size_t> coarser_time(const Offer& offer, std::size_t fractions) {
+  for (std::size_t k = 0; k < offer.columns.size(); ++k) {
+    const std::optional<double> to_s = seconds_of_one(offer.columns[k]);
+    if (k != fractions && to_s && *to_s >= 1.0 && has_numbers(offer, k)) return k;
+  }
+  return std::nullopt;
+}
+
 std::optional<std::size_t> likely_time_column(const Offer& offer) {
-  static const std::set<std::string> kNames = {"time",       "t",        "timestamp", "zeit", "date",
-                                               "time stamp", "datetime", "date/time", "datum"};
+  static const std::set<std::string> kNames = {"time",  "t",          "timestamp",   "zeit",
+                                               "date",  "time stamp", "datetime",    "date/time",
+                                               "datum", "x_value",    "elapsed time"};
   const auto first = [&](const auto& is_one) -> std::optional<std::size_t> {
     for (std::size_t k = 0; k < offer.columns.size(); ++k)
       if (is_one(k)) return k;
@@ -113,13 +170,14 @@ std::optional<std::size_t> likely_time_column(const Offer& offer) {
   const auto counts = [&](std::size_t k) { return has_numbers(offer, k) || !time_format_of(offer.cells[k]).empty(); };
   if (const auto named = first([&](std::size_t k) { return is_named(k) && counts(k); })) return named;
   if (const auto timed = first([&](std::size_t k) { return !time_format_of(offer.cells[k]).empty(); })) return timed;
-  if (const auto named = first(is_named)) return named;  // its first cell is then what is refused
+  if (const auto named = first(is_named); named && !offer.step_s) return named;  // its first cell is then refused
   const auto in_time = [&](std::size_t k) { return !unit_of_time(offer.columns[k]).empty(); };
   const auto rising = [&](std::size_t k) {
     return has_numbers(offer, k) && rises(numbers_of(offer.cells[k], offer.layout.decimal));
   };
-  if (const auto timed = first([&](std::size_t k) { return in_time(k) && rising(k); })) return timed;
-  return first(rising);
+  if (const auto timed = first([&](std::size_t k) { return in_time(k) && rising(k); }))
+    return holds_fractions(offer, *timed) ? coarser_time(offer, *timed).value_or(*timed) : *timed;
+  return offer.step_s ? std::nullopt : first(rising);
 }
 
 std::string time_unit(const Offer& offer, std::size_t column) {
@@ -160,9 +218,17 @@ std::string name_of_column(const Offer& offer, std::size_t column) {
   return std::ranges::count(offer.columns, text, &OfferedColumn::text) > 1 ? place_name(column) : text;
 }
 
-bool has_time(const Offer& offer) { return likely_time_column(offer).has_value(); }
+namespace {
 
-std::size_t time_column(const Offer& offer) { return likely_time_column(offer).value_or(0); }
+bool counts_rows(const Offer& offer) { return offer.step_s && !likely_time_column(offer); }
+
+}  // namespace
+
+bool has_time(const Offer& offer) { return counts_rows(offer) || likely_time_column(offer).has_value(); }
+
+std::size_t time_column(const Offer& offer) {
+  return counts_rows(offer) ? kNoColumn : likely_time_column(offer).value_or(0);
+}
 
 namespace {
 
@@ -191,12 +257,24 @@ void add_day(const Offer& offer, std::size_t time, ColumnMapping& mapping) {
   }
 }
 
+/// Where a clock shows one time in several rows, the column of its fractions.
+void add_fraction(const Offer& offer, std::size_t time, ColumnMapping& mapping) {
+  if (std::ranges::adjacent_find(offer.cells[time]) == offer.cells[time].end()) return;
+  for (std::size_t k = 0; k < offer.columns.size(); ++k) {
+    if (k == time || !holds_fractions(offer, k)) continue;
+    mapping.column.append(kDayAndTime).append(name_of_column(offer, k));
+    return;
+  }
+}
+
 }  // namespace
 
 ColumnMapping guess_time(const Offer& offer) {
   const std::size_t at = time_column(offer);
+  if (at == kNoColumn)
+    return {.column = std::string(kCountOfRows), .unit = "s", .scale = *offer.step_s, .is_scaled = true};
   ColumnMapping time{.column = name_of_column(offer, at), .unit = time_unit(offer, at)};
-  if (offer.text) add_day(offer, at, time);
+  if (offer.text) add_day(offer, at, time), add_fraction(offer, at, time);
   return time;
 }
 

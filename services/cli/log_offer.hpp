@@ -1,6 +1,7 @@
 // What a file of somebody's own offers: its columns with some of their cells, and which of them is the time.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,8 @@ struct Offer {
   std::vector<std::vector<std::string>> cells;  ///< the first ones of each column that hold a value; of vectors none
   std::vector<std::vector<std::size_t>> rows;   ///< of the file, in which those cells stand
   FoundLayout layout;
-  bool text = true;  ///< false: vectors of numbers, HDF5 or MATLAB
+  std::optional<double> step_s = {};  ///< between two rows, as the preamble says it
+  bool text = true;                   ///< false: vectors of numbers, HDF5 or MATLAB
 };
 
 [[nodiscard]] Result<Offer> offer_of(const std::string& file, const LogLayout& given);
@@ -30,6 +32,7 @@ struct Offer {
 /// The column called time, t, Timestamp, Zeit or Date; else the first whose cells are times; else the first that rises.
 [[nodiscard]] bool has_time(
     const Offer& offer);  ///< whether one of these is there; else the first column stands for it
+/// kNoColumn: none holds times, and the preamble says how far the rows are apart.
 [[nodiscard]] std::size_t time_column(const Offer& offer);
 [[nodiscard]] ColumnMapping guess_time(const Offer& offer);
 

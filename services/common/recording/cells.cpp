@@ -49,6 +49,29 @@ std::int64_t take_inner_fraction(std::string& text) {
   return 0;
 }
 
+/// "Z", "UTC", "+02", "+0200", "-05:30" at the end, with a blank before it or without one, taken off `text`: seconds east
+/// of Greenwich.
+std::int64_t take_zone_at_end(std::string_view& text) {
+  constexpr int kFarthest_h = 14;
+  for (const std::string_view zone : {"Z", "UTC", "GMT"}) {
+    if (!text.ends_with(zone)) continue;
+    text = trim(text.substr(0, text.size() - zone.size()));
+    return 0;
+  }
+  const std::size_t sign = text.find_last_of("+-");
+  if (sign == std::string_view::npos) return 0;
+  std::string digits(text.substr(sign + 1));
+  if (digits.size() == 5 && digits[2] == ':') digits.erase(2, 1);
+  if ((digits.size() != 2 && digits.size() != 4) || !std::ranges::all_of(digits, is_digit)) return 0;
+  const auto number = [&](std::size_t at) { return 10 * (digits[at] - '0') + digits[at + 1] - '0'; };
+  const int minutes = digits.size() == 4 ? number(2) : 0;
+  if (number(0) > kFarthest_h || minutes > 59) return 0;
+  const std::int64_t seconds = 3600 * number(0) + 60 * minutes;
+  const bool is_west = text[sign] == '-';
+  text = trim(text.substr(0, sign));
+  return is_west ? -seconds : seconds;
+}
+
 /// "03:00", "12.04.2031 03:00:00": digits on both sides of a colon.
 bool is_clock(std::string_view cell) {
   for (std::size_t at = 1; at + 1 < cell.size(); ++at)
@@ -119,12 +142,14 @@ Result<UtcTime> parse_pattern(std::string_view cell, const std::string& pattern)
   std::tm parts{};
   parts.tm_mday = 1;  // of a pattern without a date: 1970-01-01
   parts.tm_year = 70;
-  const char* const rest = strptime(text.c_str(), pattern.c_str(), &parts);
-  const auto fraction = rest != nullptr ? fraction_of_a_second(rest) : std::nullopt;
+  const char* const end = strptime(text.c_str(), pattern.c_str(), &parts);
+  std::string_view rest = end != nullptr ? trim(end) : "";
+  const std::int64_t zone_s = take_zone_at_end(rest);
+  const auto fraction = end != nullptr ? fraction_of_a_second(rest) : std::nullopt;
   if (!fraction) return fail("must be a time as " + pattern + " describes it");
   if (parts.tm_sec > 59) return fail(kLeapSecond, kLeapSecondAdvice);
   if (parts.tm_year < -200 || parts.tm_year > 350) return fail("must be a time of the years 1700 to 2250");
-  const std::int64_t seconds = timegm(&parts) - parts.tm_gmtoff;
+  const std::int64_t seconds = timegm(&parts) - parts.tm_gmtoff - zone_s;
   return UtcTime{seconds * kNanoseconds + inner + *fraction};
 }
 
@@ -164,9 +189,11 @@ Result<UtcTime> TimeFormat::moment(std::string_view cell, char decimal) const {
   std::string text(trim(cell));
   for (char& letter : text)
     if (letter == ',') letter = '.';  // ISO 8601 allows both before fractions of a second
-  for (const std::string_view zone : {" UTC", " GMT"})
-    if (text.ends_with(zone)) text.replace(text.size() - zone.size(), zone.size(), "Z");
-  return parse_utc(text);
+  std::string_view clock = text;
+  const std::int64_t zone_s = is_clock(clock) ? take_zone_at_end(clock) : 0;
+  Result<UtcTime> time = parse_utc(clock);
+  if (time) time->nanoseconds -= zone_s * kNanoseconds;
+  return time;
 }
 
 Result<double> TimeFormat::seconds(std::string_view cell, char decimal) {

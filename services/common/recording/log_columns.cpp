@@ -73,19 +73,44 @@ class Mapper {
     return known == plant_.channels.end() || known->unit.empty() ? "1" : known->unit;
   }
 
-  Status take_named(const std::string& channel, const ColumnMapping& mapping) {
-    const std::size_t plus = channel == "time" ? mapping.column.find(kDayAndTime) : std::string::npos;
-    Result<std::size_t> index = find_offered(offered_, mapping.column);
-    if (!index && plus != std::string::npos) {
-      const Result<std::size_t> day = find_offered(offered_, mapping.column.substr(0, plus));
-      if (!day) return fail(of_channel(channel, mapping.column, day.error()));
-      out_.day = *day;
-      used_.insert(*day);
-      index = find_offered(offered_, mapping.column.substr(plus + kDayAndTime.size()));
+  /// Of "Date + Time + ms" the column of the time; that of the day before it and that of the fraction behind it are
+  /// noted. A last part in a unit of time is added, any other is read with the part before it.
+  Result<std::size_t> find_time(std::string_view wanted) {
+    std::vector<std::size_t> parts;
+    for (bool more = true; more;) {
+      const std::size_t plus = wanted.find(kDayAndTime);
+      const Result<std::size_t> part = find_offered(offered_, std::string(wanted.substr(0, plus)));
+      if (!part) return fail(part.error());
+      if (std::ranges::find(parts, *part) != parts.end()) return fail("is one column twice", "give its name once");
+      parts.push_back(*part);
+      more = plus != std::string_view::npos;
+      if (more) wanted.remove_prefix(plus + kDayAndTime.size());
     }
+    used_.insert(parts.begin(), parts.end());
+    if (const auto fraction = seconds_of_one(offered_[parts.back()])) {
+      out_.fraction = parts.back(), out_.fraction_to_s = *fraction;
+      parts.pop_back();
+    }
+    if (parts.size() > 2) return fail("is more than a day, a time and its fraction", "name up to three columns");
+    if (parts.size() == 2) out_.day = parts.front();
+    return parts.back();
+  }
+
+  /// The column that a mapping means.
+  Result<std::size_t> find_named(const std::string& channel, const ColumnMapping& mapping) {
+    Result<std::size_t> index = find_offered(offered_, mapping.column);
+    if (index || channel != "time") return index;
+    if (mapping.column.find(kDayAndTime) != std::string::npos) return find_time(mapping.column);
+    if (mapping.column != kCountOfRows) return index;
+    if (!mapping.is_scaled && mapping.scale == 1.0)
+      return fail("counts the rows, which needs the time between two", "{column: row, unit: s, scale: SECONDS}");
+    return kNoColumn;
+  }
+
+  Status take_named(const std::string& channel, const ColumnMapping& mapping) {
+    const Result<std::size_t> index = find_named(channel, mapping);
     if (!index) return fail(of_channel(channel, mapping.column, index.error()));
-    if (out_.day == *index)
-      return fail(error_at("channel time", mapping.column, "is one column twice", "give its name once"));
+    if (*index == kNoColumn) return take(channel, *index, mapping.unit, mapping);
     const auto same = std::ranges::find(out_.columns, *index, &MappedColumn::index);
     if (same != out_.columns.end())
       return fail(error_at("channel " + channel, mapping.column,
@@ -169,13 +194,50 @@ std::string unit_of(const OfferedColumn& column) {
   return column.unit.empty() ? split_header_cell(column.text).unit : column.unit;
 }
 
+namespace {
+
+/// "V" of "U/V" and "m/s" of "v/(m/s)"; a flow or a speed, "l/min", is a unit itself and has none behind its slash.
+std::string_view unit_behind_a_slash(std::string_view text, const std::string& si_unit) {
+  for (const char* rate : {"m/s", "rad/s", "m3/s"})
+    if (text.find(' ') == std::string_view::npos && convert_unit(text, rate)) return {};
+  for (std::size_t at = text.find('/'); at != std::string_view::npos; at = text.find('/', at + 1)) {
+    std::string_view unit = trim(text.substr(at + 1));
+    if (unit.starts_with('(') && unit.ends_with(')')) unit = trim(unit.substr(1, unit.size() - 2));
+    if (at > 0 && !unit.empty() && convert_unit(unit, si_unit)) return unit;
+  }
+  return {};
+}
+
+/// "V" of "Drive (V) (raw)" and "Drive[V]{1}": the last in brackets.
+std::string_view unit_in_brackets(std::string_view text, const std::string& si_unit) {
+  for (std::size_t open = text.find_last_of("[("); open != std::string_view::npos && open > 0;
+       open = text.find_last_of("[(", open - 1)) {
+    const std::size_t close = text.find(text[open] == '[' ? ']' : ')', open);
+    if (close == std::string_view::npos) continue;
+    const std::string_view unit = trim(text.substr(open + 1, close - open - 1));
+    if (!unit.empty() && convert_unit(unit, si_unit)) return unit;
+  }
+  return {};
+}
+
+}  // namespace
+
 std::string unit_at_the_end(std::string_view text, const std::string& si_unit) {
   const std::size_t begin = text.find_last_of(" _");
   const std::string_view last = begin == std::string_view::npos ? std::string_view() : text.substr(begin + 1);
   const bool plain = si_unit.empty() || si_unit == "1",
              number = last == "%" || last == "pct" || last == "counts" || last == "count";
   const bool fits = number || (!plain && last.size() > 1 && convert_unit(last, si_unit).has_value());
-  return std::string(fits ? last : std::string_view());
+  if (fits || plain) return std::string(fits ? last : std::string_view());
+  const std::string_view behind = unit_behind_a_slash(text, si_unit);
+  return std::string(behind.empty() ? unit_in_brackets(text, si_unit) : behind);
+}
+
+std::optional<double> seconds_of_one(const OfferedColumn& column) {
+  for (const std::string& said : {unit_of(column), unit_at_the_end(column.text, "s"), column.text})
+    if (!said.empty())
+      if (const Result<UnitConversion> unit = convert_unit(said, "s")) return unit->scale;
+  return std::nullopt;
 }
 
 Result<std::size_t> find_offered(const std::vector<OfferedColumn>& offered, const std::string& wanted) {

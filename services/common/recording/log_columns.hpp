@@ -19,11 +19,15 @@ struct OfferedColumn {
   std::string unit = {};  ///< said beside it, in a row of units or an attribute
 };
 
-/// Between the column of the day and that of the time, where a log has both apart: "Date + Time".
+/// Between the columns that a time is read from, where a log has them apart: "Date + Time", "Time + ms", or all three.
 inline constexpr std::string_view kDayAndTime = " + ";
 
+/// Of a time that no column holds: the rows are counted.
+inline constexpr std::string_view kCountOfRows = "row";
+inline constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
+
 struct MappedColumn {
-  std::size_t index = 0;  ///< of the offered columns
+  std::size_t index = 0;  ///< of the offered columns; kNoColumn: the count of rows
   Column column;          ///< of `time` to_si is not used: see `time_unit`
 };
 
@@ -31,7 +35,9 @@ struct MappedColumns {
   std::vector<MappedColumn> columns;  ///< each channel once, `time` among them
   std::string time_unit;              ///< for TimeFormat, as are:
   double time_scale = 1.0, time_offset = 0.0;
-  std::optional<std::size_t> day;  ///< the offered column that stands before the time's cell, with a blank between
+  std::optional<std::size_t> day;       ///< the offered column that stands before the time's cell, with a blank between
+  std::optional<std::size_t> fraction;  ///< the offered column whose number is added to the time
+  double fraction_to_s = 0.0;
   std::vector<std::string> left_aside;
   std::vector<std::string> warnings = {};  ///< of columns whose unit is another in the map than in the log
 };
@@ -43,8 +49,13 @@ struct MappedColumns {
 [[nodiscard]] std::string unit_of(const OfferedColumn& column);
 
 /// The unit at the end of a name, "t_ms", "Speed rpm", where it is one of `si_unit`'s quantity and no letter, which may be
-/// a chamber's; "%" and "counts" of any quantity, which are to be refused without a scale. "" where there is none.
+/// a chamber's; "%" and "counts" of any quantity, which are to be refused without a scale. Behind a slash, "U/V", or in
+/// brackets that something follows, "Stroke (mm) - raw", a letter too. "" where there is none.
 [[nodiscard]] std::string unit_at_the_end(std::string_view text, const std::string& si_unit);
+
+/// How many seconds one of a column's numbers is, where the column says a unit of time: beside it, at its end or as its
+/// name, as ms, Milliseconds and nsecs do.
+[[nodiscard]] std::optional<double> seconds_of_one(const OfferedColumn& column);
 
 /// How the time column counts.
 [[nodiscard]] Result<TimeFormat> time_format(const MappedColumns& mapped);

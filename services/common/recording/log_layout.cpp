@@ -5,6 +5,7 @@
 #include <cctype>
 #include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -26,11 +27,30 @@ constexpr std::array kDelimiters = {std::pair{"semicolon", ';'}, std::pair{"tab"
 constexpr std::array kDecimals = {std::pair{"point", '.'}, std::pair{"comma", ','}};
 
 // The day before the month: of "3/4/2031" nobody can tell, of "25/4/2031" and "4/25/2031" the cells do.
-constexpr std::array kTimePatterns = {
-    "%d.%m.%Y %H:%M:%S", "%d.%m.%Y %H:%M",    "%d/%m/%Y %H:%M:%S", "%m/%d/%Y %I:%M:%S %p",
-    "%m/%d/%Y %H:%M:%S", "%Y/%m/%d %H:%M:%S", "%d-%b-%Y %H:%M:%S", "%b %d %Y %H:%M:%S",
-    "%d %b %Y %H:%M:%S", "%d.%m.%y %H:%M:%S", "%d/%m/%y %H:%M:%S", "%m/%d/%y %I:%M:%S %p",
-    "%m/%d/%y %H:%M:%S", "%Y%m%d %H%M%S",     "%H:%M:%S",          "%I:%M:%S %p"};
+constexpr std::array kTimePatterns = {"%d.%m.%Y %H:%M:%S",
+                                      "%d.%m.%Y, %H:%M:%S",
+                                      "%d.%m.%Y %H:%M",
+                                      "%d/%m/%Y %H:%M:%S",
+                                      "%d/%m/%Y, %H:%M:%S",
+                                      "%d-%m-%Y %H:%M:%S",
+                                      "%m/%d/%Y %I:%M:%S %p",
+                                      "%m/%d/%Y, %I:%M:%S %p",
+                                      "%m/%d/%Y %H:%M:%S",
+                                      "%m-%d-%Y %H:%M:%S",
+                                      "%Y/%m/%d %H:%M:%S",
+                                      "%Y.%m.%d %H:%M:%S",
+                                      "%Y-%m-%d %I:%M:%S %p",
+                                      "%d-%b-%Y %H:%M:%S",
+                                      "%b %d %Y %H:%M:%S",
+                                      "%d %b %Y %H:%M:%S",
+                                      "%d.%m.%y %H:%M:%S",
+                                      "%d/%m/%y %H:%M:%S",
+                                      "%m/%d/%y %I:%M:%S %p",
+                                      "%m/%d/%y %H:%M:%S",
+                                      "%Y%m%d %H%M%S",
+                                      "%Y%m%dT%H%M%S",
+                                      "%H:%M:%S",
+                                      "%I:%M:%S %p"};
 
 using Rows = std::vector<std::vector<std::string>>;
 
@@ -47,13 +67,20 @@ bool is_without_signs(std::string_view cell) {
   return day && number(8) < 24 && number(10) < 60 && number(12) < 60 && parse_pattern(text, kWithoutSigns).has_value();
 }
 
+constexpr const char* kMinutes = "%M:%S";
+
+/// "00:10.5": hours and minutes have no fraction behind them.
+bool is_minutes(std::string_view cell) {
+  return cell.find_first_of(".,") != std::string_view::npos && parse_pattern(cell, kMinutes).has_value();
+}
+
 bool is_iso(std::string_view cell) {
   const auto format = TimeFormat::of("iso8601");
   return trim(cell).size() > 10 && TimeFormat(*format).seconds(cell, '.').has_value();
 }
 
 bool is_time(std::string_view cell) {
-  return is_iso(cell) || std::ranges::any_of(kTimePatterns, [&](const char* pattern) {
+  return is_iso(cell) || is_minutes(cell) || std::ranges::any_of(kTimePatterns, [&](const char* pattern) {
            return parse_pattern(cell, pattern).has_value();
          });
 }
@@ -148,13 +175,23 @@ std::optional<Reading> best_reading(std::string_view head, const LogLayout& give
   return best;
 }
 
-/// Whether a cell of the table shows which sign is the decimal one.
-bool shows_decimal(const Reading& reading) {
-  return std::ranges::any_of(reading.rows, [&](const std::vector<std::string>& row) {
-    return row.size() == reading.width && is_row_of_values(row, reading.form, reading.expected) &&
-           std::ranges::any_of(row,
-                               [&](const std::string& cell) { return shows_decimal_sign(cell, reading.form.decimal); });
-  });
+/// What the table's cells show of its decimal sign.
+DecimalSign decimal_sign_of(const Reading& reading) {
+  const char decimal = reading.form.decimal;
+  std::vector<bool> has_whole(reading.width), has_either(reading.width);
+  for (const auto& row : reading.rows) {
+    if (row.size() != reading.width || !is_row_of_values(row, reading.form, reading.expected)) continue;
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      if (shows_decimal_sign(row[k], decimal)) return DecimalSign::known;
+      if (may_have_thousands(row[k], decimal))
+        has_either[k] = true;
+      else if (parse_number(row[k], decimal))
+        has_whole[k] = true;
+    }
+  }
+  for (std::size_t k = 0; k < reading.width; ++k)
+    if (has_whole[k] && has_either[k]) return DecimalSign::doubtful;
+  return DecimalSign::likely;
 }
 
 std::string without_brackets(std::string_view text) {
@@ -208,6 +245,22 @@ std::size_t row_called_units(const Reading& reading, std::size_t header_row) {
   return 0;
 }
 
+/// Of the rows above the table the lowest that is no remark, "DT=0.01" in one cell of many, on the names and units over
+/// it; `above` where there are none.
+std::size_t without_remarks(const Reading& reading, std::size_t above, std::size_t least) {
+  constexpr std::size_t kMostRemarks = 5;
+  const auto filled = [&](std::size_t number) {
+    const auto& row = reading.rows[number - 1];
+    return row.size() - static_cast<std::size_t>(std::ranges::count_if(row, is_blank));
+  };
+  for (std::size_t number = above; number > least && number + kMostRemarks > above; --number) {
+    const auto& row = reading.rows[number - 1];
+    if (2 * filled(number) < reading.width) continue;
+    return row.size() == reading.width && values_in(row, reading.form) == 0 ? number : above;
+  }
+  return above;
+}
+
 /// The rows above the table. Row numbers are the editor's, 1 for the first; rows[k] is row k + 1.
 void find_header(const Reading& reading, const LogLayout& given, FoundLayout& out) {
   const auto row = [&reading](std::size_t number) -> const std::vector<std::string>& {
@@ -217,10 +270,10 @@ void find_header(const Reading& reading, const LogLayout& given, FoundLayout& ou
     while (number > 0 && std::ranges::all_of(row(number), is_blank)) --number;
     return number;
   };
-  std::size_t above = filled_row(out.first_row - 1);
   out.units_row = static_cast<std::size_t>(given.units_row);
   const bool header_given = given.header_row > 0;
   const std::size_t least = header_given ? static_cast<std::size_t>(given.header_row) : 1;
+  std::size_t above = without_remarks(reading, filled_row(out.first_row - 1), header_given ? least : 0);
   const auto are_units = [&](std::size_t number) {
     if (number <= least || row(number).size() <= 1) return false;
     const std::size_t names = filled_row(number - 1);
@@ -287,6 +340,34 @@ std::size_t find_first_row(const Reading& reading, std::size_t least) {
   return first_named;
 }
 
+/// NaN, ---, n/a, #N/A: what loggers write where a channel has no value; not any word without a digit, as a name may be.
+bool is_word_for_no_value(std::string_view cell) {
+  static const std::set<std::string> kWords = {"nan",  "n/a", "na",    "null",  "none",    "inf",     "infinity",
+                                               "bad",  "err", "error", "ol",    "invalid", "no data", "nodata",
+                                               "#n/a", "?",   "over",  "under", "---",     "--",      "-"};
+  std::string text(trim(cell));
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const bool is_signed = text.size() > 1 && (text.front() == '-' || text.front() == '+');
+  return kWords.contains(text) || kWords.contains(text.substr(is_signed ? 1 : 0)) || text.starts_with("---");
+}
+
+/// The table's first row: above the first one with values there may be some whose channels have none yet, "0.0;NaN;---",
+/// below the names.
+std::size_t with_rows_without_values(const Reading& reading, std::size_t first_row, std::size_t least) {
+  const auto is_one = [&](const std::vector<std::string>& row) {
+    return row.size() == reading.width && is_value(row.front(), reading.form) &&
+           std::all_of(row.begin() + 1, row.end(), [&](const std::string& cell) {
+             return is_blank(cell) || is_word_for_no_value(cell) || is_value(cell, reading.form);
+           });
+  };
+  std::size_t first = first_row;
+  while (first > least + 1 && is_one(reading.rows[first - 2])) --first;
+  const auto& above = reading.rows[first > 1 ? first - 2 : 0];
+  const bool names_stand_above = first > 1 && above.size() == reading.width && values_in(above, reading.form) == 0 &&
+                                 !std::ranges::all_of(above, is_blank);
+  return names_stand_above ? first : first_row;
+}
+
 /// "% time x": the sign that makes a comment of the header is no name where it makes a cell too many.
 std::vector<std::string> without_comment_sign(std::vector<std::string> header, std::size_t width) {
   if (header.size() == width + 1 && (header.front() == "%" || header.front() == "#")) header.erase(header.begin());
@@ -349,10 +430,12 @@ Result<FoundLayout> find_layout(std::string_view head, const LogLayout& given) {
                          "no table of numbers follows within " + std::to_string(kRowsLookedAt) + " rows",
                          "say how the log is written, under log: delimiter, decimal, header_row"));
   FoundLayout out{.delimiter = reading->delimiter, .decimal = reading->form.decimal, .header = {}, .units = {}};
-  if (!given.decimal.empty() || shows_decimal(*reading)) out.decimal_sign = DecimalSign::known;
+  out.decimal_sign = given.decimal.empty() ? decimal_sign_of(*reading) : DecimalSign::known;
   out.first_row = static_cast<std::size_t>(given.first_row);
   const auto least = static_cast<std::size_t>(std::max(given.header_row, given.units_row));
   if (out.first_row == 0) out.first_row = find_first_row(*reading, least);
+  if (given.first_row == 0 && out.first_row > 0)
+    out.first_row = with_rows_without_values(*reading, out.first_row, least);
   if (out.first_row == 0 || out.first_row > reading->rows.size())
     return fail(error_at("row " + std::to_string(reading->rows.size()) + ", column 1", {},
                          "the file ends before its first row of numbers", "look at header_row and first_row"));
@@ -366,6 +449,21 @@ Result<FoundLayout> find_layout(std::string_view head, const LogLayout& given) {
     out.units.push_back(without_brackets(cell));
   out.units.resize(out.header.size());
   return out;
+}
+
+bool repeats_head(const FoundLayout& layout, const std::vector<std::string_view>& cells) {
+  const std::string_view first = cells.empty() ? std::string_view() : trim(cells.front());
+  if (!first.empty() && std::isdigit(static_cast<unsigned char>(first.front())) != 0)
+    return false;  // as nearly all are
+  const auto is_row = [&](const std::vector<std::string>& row, const auto& as_it_was_read) {
+    for (std::size_t k = 0; k < std::max(row.size(), cells.size()); ++k)
+      if (as_it_was_read(k < cells.size() ? cells[k] : std::string_view()) != (k < row.size() ? row[k] : ""))
+        return false;
+    return true;
+  };
+  const auto as_name = [](std::string_view cell) { return as_utf8(trim(cell)); };
+  return (layout.header_row > 0 && is_row(layout.header, as_name)) ||
+         (layout.units_row > 0 && is_row(layout.units, without_brackets));
 }
 
 namespace {
@@ -404,6 +502,7 @@ std::string time_format_of(const std::vector<std::string>& cells) {
   if (cells.empty()) return {};
   if (std::ranges::all_of(cells, is_iso)) return "iso8601";
   if (std::ranges::all_of(cells, is_without_signs)) return kWithoutSigns;
+  if (std::ranges::all_of(cells, is_minutes)) return kMinutes;
   for (const char* pattern : kTimePatterns)
     if (std::ranges::all_of(cells, [&](const auto& cell) { return parse_pattern(cell, pattern).has_value(); }))
       return pattern;

@@ -71,7 +71,8 @@ class LogReader {
 
   Status read_row() {
     const std::size_t filled = filled_cells(cells_);
-    if (filled == 0) return {};
+    if (filled == 0 || repeats_head(layout_, cells_)) return {};
+    ++rows_of_table_;
     if (map_.log.incomplete_rows == "skip" && is_incomplete()) return {};
     if (++rows_read_ * mapped_.columns.size() > kMostNumbers)
       return fail(error_in(0, "the file holds more than " + std::to_string(kMostNumbers) + " numbers",
@@ -103,50 +104,78 @@ class LogReader {
     return {};
   }
 
-  [[nodiscard]] std::string_view cell(std::size_t k) const {
-    const std::size_t index = mapped_.columns[k].index;
+  [[nodiscard]] std::string_view cell(std::size_t k) const { return cell_of(mapped_.columns[k].index); }
+
+  [[nodiscard]] std::string_view cell_of(std::size_t index) const {
     return index < cells_.size() ? cells_[index] : std::string_view();
   }
 
   /// What the time is read from: its cell, behind that of the day where this has its own.
   [[nodiscard]] std::string_view time_cell() {
     if (!mapped_.day) return cell(time_);
-    day_and_time_ = trim(*mapped_.day < cells_.size() ? cells_[*mapped_.day] : std::string_view());
+    day_and_time_ = trim(cell_of(*mapped_.day));
     day_and_time_.append(" ").append(trim(cell(time_)));
     return day_and_time_;
   }
 
   [[nodiscard]] bool is_incomplete() const {
-    if (mapped_.day && (*mapped_.day >= cells_.size() || holds_no_value(cells_[*mapped_.day]))) return true;
-    for (std::size_t k = 0; k < mapped_.columns.size(); ++k)
-      if (holds_no_value(cell(k))) return true;
-    return false;
+    for (const auto& part : {mapped_.day, mapped_.fraction})
+      if (part && holds_no_value(cell_of(*part))) return true;
+    return std::ranges::any_of(mapped_.columns, [&](const MappedColumn& column) {
+      return column.index != kNoColumn && holds_no_value(cell_of(column.index));
+    });
+  }
+
+  /// A cell of numbers without separators of thousands, where it has some; an Error where that cannot be told.
+  [[nodiscard]] Result<std::string_view> plain(std::string_view cell) {
+    const bool is_number = parse_number(cell, layout_.decimal).has_value();
+    if (is_number && !(is_doubtful() && may_have_thousands(cell, layout_.decimal))) return cell;
+    if (auto without = without_thousands(cell, layout_.decimal, layout_.decimal_sign)) {
+      without_thousands_ = std::move(*without);
+      return without_thousands_;
+    }
+    if (is_number || without_thousands(cell, layout_.decimal, DecimalSign::known))
+      return fail("may be a number with thousands or with decimals", "log: {decimal: point} or {decimal: comma}");
+    return cell;
+  }
+
+  [[nodiscard]] bool is_doubtful() const { return layout_.decimal_sign == DecimalSign::doubtful; }
+
+  [[nodiscard]] Result<double> number_in(std::string_view cell) {
+    Result<double> number = parse_number(cell, layout_.decimal);
+    if (number && !is_doubtful()) return number;
+    const Result<std::string_view> text = plain(cell);
+    return text ? parse_number(*text, layout_.decimal) : fail(text.error());
   }
 
   Result<double> seconds_at() {
-    Result<double> seconds = time_format_.seconds(time_cell(), layout_.decimal);
-    if (!seconds && !mapped_.day)
-      if (const auto plain = without_thousands(cell(time_), layout_.decimal, layout_.decimal_sign))
-        seconds = time_format_.seconds(*plain, layout_.decimal);
-    return seconds;
+    if (mapped_.columns[time_].index == kNoColumn) return time_format_.seconds(static_cast<double>(rows_of_table_ - 1));
+    const auto read = [&](std::string_view text) { return time_format_.seconds(text, layout_.decimal); };
+    Result<double> seconds = read(time_cell());
+    if ((!seconds || is_doubtful()) && !mapped_.day) {
+      const Result<std::string_view> text = plain(cell(time_));
+      if (!text) return fail(text.error());
+      if (*text != cell(time_)) seconds = read(*text);
+    }
+    if (!seconds || !mapped_.fraction) return seconds;
+    const Result<double> fraction = number_in(cell_of(*mapped_.fraction));
+    if (!fraction)
+      return fail("its fraction, in column " + std::to_string(*mapped_.fraction + 1) + ", must be a number");
+    return *seconds + *fraction * mapped_.fraction_to_s;
   }
 
   Result<double> number_at(std::size_t k) {
-    if (mapped_.columns[k].index >= cells_.size())
+    const bool is_counted = mapped_.columns[k].index == kNoColumn;
+    if (!is_counted && mapped_.columns[k].index >= cells_.size())
       return fail("the row has " + std::to_string(cells_.size()) + " cells and this is column " +
                       std::to_string(mapped_.columns[k].index + 1),
                   rows_.has_line_break() ? "take the row out" : "the last line is cut off");
-    if (k == time_ && values_[time_].empty() && trim(cell(k)).empty())
-      return fail("the cell is empty", "export the log with its times, as LabVIEW does with one X column");
+    if (k == time_ && !is_counted && values_[time_].empty() && trim(cell(k)).empty())
+      return fail("the cell is empty", "in the map: time: {column: row, unit: s, scale: SECONDS_BETWEEN_ROWS}");
     if (k == time_) return seconds_at();
-    Result<double> number = parse_number(cell(k), layout_.decimal);
+    const Result<double> number = number_in(cell(k));
     if (!number && holds_no_value(cell(k)))
       return fail(number.error().rule, "log: {incomplete_rows: skip} leaves such rows out");
-    if (!number)
-      if (const auto plain = without_thousands(cell(k), layout_.decimal, layout_.decimal_sign))
-        number = parse_number(*plain, layout_.decimal);
-    if (!number && without_thousands(cell(k), layout_.decimal, DecimalSign::known))
-      return fail("may be a number with thousands or with decimals", "log: {decimal: point} or {decimal: comma}");
     if (!number) return fail(number.error().rule, number.error().advice);
     const double value = mapped_.columns[k].column.to_si.to_si(*number);
     return std::isfinite(value) ? Result<double>(value) : fail("is out of a double's range");
@@ -207,8 +236,10 @@ class LogReader {
   [[nodiscard]] Error error_in(std::size_t k, std::string rule, std::string advice = {}) const {
     const std::string& channel = mapped_.columns[k].column.name;
     const std::size_t index = mapped_.columns[k].index;
-    return error_at("row " + std::to_string(rows_.row()) + ", column " + std::to_string(index + 1) + " (" +
-                        printable(layout_.header[index]) + ", channel " + channel + ")",
+    const std::string row = "row " + std::to_string(rows_.row());
+    if (index == kNoColumn) return error_at(row + ", channel time", {}, std::move(rule), std::move(advice));
+    return error_at(row + ", column " + std::to_string(index + 1) + " (" + printable(layout_.header[index]) +
+                        ", channel " + channel + ")",
                     k == time_ && mapped_.day ? day_and_time_ : cell(k), std::move(rule), std::move(advice));
   }
 
@@ -219,7 +250,7 @@ class LogReader {
   MappedColumns mapped_;
   TimeFormat time_format_;
   std::vector<std::string_view> cells_;
-  std::string day_and_time_;
+  std::string day_and_time_, without_thousands_;
   std::vector<std::vector<double>> values_;  ///< of the test that is being read, by mapped column
   std::size_t time_ = 0;                     ///< index of time among the mapped columns
   std::size_t width_ = 0;                    ///< cells of the header
@@ -227,7 +258,8 @@ class LogReader {
   LastNumber last_number_;
   double shift_s_ = 0.0;  ///< added to the log's time since it started anew
   std::size_t rows_read_ = 0;
-  std::size_t first_row_ = 0;  ///< of the test that is being read
+  std::size_t rows_of_table_ = 0;  ///< and those that were left out
+  std::size_t first_row_ = 0;      ///< of the test that is being read
   Log out_;
 };
 

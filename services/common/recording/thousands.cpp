@@ -64,14 +64,18 @@ std::optional<std::string> without_thousands(std::string_view text, char decimal
   if (!found) return std::nullopt;
   const bool is_point_or_comma = found->separator == "." || found->separator == ",";
   const bool may_be_decimal = is_point_or_comma && found->groups == 1 && !found->rest.starts_with(decimal);
-  if (may_be_decimal && sign == DecimalSign::likely) return std::nullopt;
+  if (may_be_decimal && sign != DecimalSign::known) return std::nullopt;
   out.append(found->digits).append(found->rest);
   return parse_number(out, decimal) ? std::optional(out) : std::nullopt;
 }
 
+bool may_have_thousands(std::string_view cell, char decimal) {
+  return cell.find(decimal) != std::string_view::npos &&
+         without_thousands(cell, decimal == '.' ? ',' : '.', DecimalSign::known);
+}
+
 bool shows_decimal_sign(std::string_view cell, char decimal) {
-  const char other = decimal == '.' ? ',' : '.';
-  if (cell.find(decimal) == std::string_view::npos || without_thousands(cell, other, DecimalSign::known)) return false;
+  if (cell.find(decimal) == std::string_view::npos || may_have_thousands(cell, decimal)) return false;
   return parse_number(cell, decimal) || without_thousands(cell, decimal, DecimalSign::likely);
 }
 

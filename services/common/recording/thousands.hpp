@@ -8,12 +8,16 @@
 
 namespace sealwatch {
 
-/// Whether the decimal sign that a table is read with is known, from it or by the map, or only likely.
-enum class DecimalSign { likely, known };
+/// Whether the decimal sign that a table is read with is known, from it or by the map, only likely, or may as well
+/// separate thousands: "500" and "1,000" stand in one column, and nothing else tells.
+enum class DecimalSign { doubtful, likely, known };
 
 /// `text` without its separators of thousands: a number, then; nothing where it has none, or where they may be decimal
 /// signs. `decimal` is '.' or ','.
 [[nodiscard]] std::optional<std::string> without_thousands(std::string_view text, char decimal, DecimalSign sign);
+
+/// Whether `cell` is a number with this decimal sign, and another one where the sign separates its thousands: "1,000".
+[[nodiscard]] bool may_have_thousands(std::string_view cell, char decimal);
 
 /// Whether `cell` is a number with this decimal sign, and cannot be one whose thousands that sign separates: "0.5".
 [[nodiscard]] bool shows_decimal_sign(std::string_view cell, char decimal);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "sealwatch/core/visible_text.hpp"
@@ -45,17 +46,24 @@ Result<std::vector<std::vector<double>>> numbers_of(std::vector<MatVariable>& ve
   std::vector<std::vector<double>> numbers;
   std::size_t rows = 0;
   for (const MappedColumn& found : mapped.columns) {
+    if (found.index == kNoColumn) {
+      std::vector<double>& counted = numbers.emplace_back(numbers.empty() ? 0 : numbers.front().size());
+      std::iota(counted.begin(), counted.end(), 0.0);
+      rows = counted.size();
+      continue;
+    }
     MatVariable& vector = vectors[found.index];
     if (const Status checked = check_vector(vector, found.column.name, map); !checked) return fail(checked.error());
     if (found.column.name == "time") rows = vector.values.size();
     numbers.push_back(std::move(vector.values));
   }
   if (rows == 0) return fail(error_at("channel time", {}, "holds no samples"));
-  if (mapped.day)
-    return fail(error_at("channel time", vectors[*mapped.day].name, "is a day, which only logs of text have apart",
-                         "name one column"));
+  for (const auto& part : {mapped.day, mapped.fraction})
+    if (part)
+      return fail(error_at("channel time", vectors[*part].name,
+                           "is a part of a time, which only logs of text have apart", "name one column"));
   for (std::size_t k = 0; k < numbers.size(); ++k)
-    if (numbers[k].size() != rows)
+    if (mapped.columns[k].index != kNoColumn && numbers[k].size() != rows)
       return fail(
           error_at("channel " + mapped.columns[k].column.name, vectors[mapped.columns[k].index].name,
                    "has " + std::to_string(numbers[k].size()) + " samples where time has " + std::to_string(rows),

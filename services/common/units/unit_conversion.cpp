@@ -46,8 +46,16 @@ constexpr std::array kAdditions = {
     Addition{"DegF", "degF", "K"}, Addition{"DEGC", "degC", "K"}, Addition{"DEGF", "degF", "K"},
     Addition{"Celsius", "degC", "K"}, Addition{"Fahrenheit", "degF", "K"}, Addition{"ºC", "degC", "K"},
     Addition{"ºF", "degF", "K"}, Addition{"kg/cm2", "kgf/cm2", "Pa"}, Addition{"kg/cm²", "kgf/cm2", "Pa"},
-    Addition{"lb", "lbf", "N"}, Addition{"lbs", "lbf", "N"}, Addition{"kg", "kgf", "N"},
-    Addition{"ft-lb", "ft lbf", "N m"}, Addition{"lb-ft", "ft lbf", "N m"}, Addition{"in-lb", "in lbf", "N m"},
+    // In capitals, as old loggers write: UDUNITS takes some for other units, MSEC for a million seconds.
+    Addition{"MSEC", "ms", "s"}, Addition{"Msec", "ms", "s"}, Addition{"MS", "ms", "s"}, Addition{"mSec", "ms", "s"},
+    Addition{"millis", "ms", "s"}, Addition{"micros", "us", "s"}, Addition{"nanos", "ns", "s"},
+    Addition{"MM", "mm", "m"}, Addition{"CM", "cm", "m"}, Addition{"MM/S", "mm/s", "m/s"}, Addition{"BAR", "bar", "Pa"},
+    Addition{"MBAR", "mbar", "Pa"}, Addition{"KPA", "kPa", "Pa"}, Addition{"MPA", "MPa", "Pa"},
+    Addition{"PA", "Pa", "Pa"}, Addition{"KN", "kN", "N"}, Addition{"NM", "N m", "N m"},
+    Addition{"L/MIN", "L/min", "m3/s"}, Addition{"MV", "mV", "V"}, Addition{"MA", "mA", "A"},
+    Addition{"AMPS", "A", "A"}, Addition{"VOLTS", "V", "V"}, Addition{"lb", "lbf", "N"}, Addition{"lbs", "lbf", "N"},
+    Addition{"kg", "kgf", "N"}, Addition{"ft-lb", "ft lbf", "N m"}, Addition{"lb-ft", "ft lbf", "N m"},
+    Addition{"in-lb", "in lbf", "N m"},
     // Of an angular speed, what has no angle counts revolutions: nobody logs radians a minute.
     Addition{"1/min", "rpm", "rad/s"}, Addition{"min-1", "rpm", "rad/s"}, Addition{"min^-1", "rpm", "rad/s"},
     Addition{"/min", "rpm", "rad/s"}, Addition{"min⁻¹", "rpm", "rad/s"}};

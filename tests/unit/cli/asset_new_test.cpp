@@ -70,7 +70,7 @@ TEST_F(AssetNew, ALogWithoutATimeIsRefused) {
   EXPECT_EQ(make("U [V];Weg [mm]\n1,5;60\n1,2;59\n1,7;58\n"), kBadInput);
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_THAT(said, testing::HasSubstr("log.csv: no column is a time"));
-  EXPECT_THAT(said, testing::HasSubstr("scale: SECONDS_BETWEEN_SAMPLES"));
+  EXPECT_THAT(said, testing::HasSubstr("time: {column: row, unit: s, scale: SECONDS_BETWEEN_ROWS}"));
   EXPECT_FALSE(std::filesystem::exists(path("a.yaml")));
 }
 
@@ -226,7 +226,8 @@ TEST_F(AssetNew, OfALogWithManyColumnsSomeAreNamed) {
   for (int k = 0; k < 200; ++k) header += ",Ei" + std::to_string(k) + " [mm/kg]", row += ",1";
   ::testing::internal::CaptureStderr();
   EXPECT_EQ(make((header + "\n" + row + "\n").c_str()), kBadInput);
-  EXPECT_THAT(::testing::internal::GetCapturedStderr(), ::testing::HasSubstr("Ei28 [mm/kg], and 171 more; known are"));
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
+              ::testing::HasSubstr("Ei28 [mm/kg], and 171 more; under channels: time: {column"));
 }
 
 TEST_F(AssetNew, TestsInOneFileAndRowsWithHolesAreSeen) {
@@ -425,14 +426,134 @@ TEST_F(AssetNew, WhatIsUncertainIsSaidOnTheScreen) {
 TEST_F(AssetNew, AColumnWhoseCellsAreNoNumbersIsNamed) {
   write_pump();
   ::testing::internal::CaptureStdout();
-  ASSERT_EQ(make("t [s],Opening [%],Pressure [psig]\n0,1,1\n1,1,\"1,235.5\"\n", path("pump.yaml")), kOk);
+  ASSERT_EQ(make("t [s],Opening [%],Pressure [psig]\n0,1,1\n1,1,12.5 or so\n", path("pump.yaml")), kOk);
   const std::string told = ::testing::internal::GetCapturedStdout();
   EXPECT_THAT(told, ::testing::HasSubstr("output pressure [Pa] not found in "));
-  EXPECT_THAT(told, ::testing::HasSubstr("may be it, but '1,235.5' in row 3"));
+  EXPECT_THAT(told, ::testing::HasSubstr("may be it, but '12.5 or so' in row 3"));
   EXPECT_THAT(told, ::testing::HasSubstr("has the unit of: valve_lift [m]"));
   std::ostringstream text;
   text << std::ifstream(path("a.yaml")).rdbuf();
-  EXPECT_THAT(text.str(), ::testing::HasSubstr("Pressure [psig] may be it, but '1,235.5' in row 3 is not a number"));
+  EXPECT_THAT(text.str(), ::testing::HasSubstr("Pressure [psig] may be it, but '12.5 or so' in row 3 is not a number"));
+}
+
+/// What `make` reads of motor_voltage [V] and position [m], and says of it.
+struct ReadBack {
+  TimeSeries samples;
+  std::string told;
+};
+
+class StrangeLogs : public AssetNew {
+ protected:
+  ReadBack read_back(const std::string& text) {
+    std::filesystem::remove(path("a.yaml"));
+    ::testing::internal::CaptureStdout();
+    ::testing::internal::CaptureStderr();
+    const int code = make(text.c_str(), "eha");
+    ReadBack back{.samples = {}, .told = ::testing::internal::GetCapturedStdout()};
+    EXPECT_EQ(code, kOk) << ::testing::internal::GetCapturedStderr() << text;
+    if (code != kOk) return back;
+    ::testing::internal::GetCapturedStderr();
+    const Result<AssetConfig> asset = load_asset(path("a.yaml"));
+    EXPECT_TRUE(asset);
+    const auto recording = read_recording(path("log.csv"), **find_plant("eha"), asset->channel_map);
+    EXPECT_TRUE(recording) << recording.error().describe();
+    back.samples = recording->samples;
+    return back;
+  }
+  void expect_three_rows(const std::string& text) {
+    const ReadBack back = read_back(text);
+    ASSERT_TRUE(back.samples.has("motor_voltage") && back.samples.has("position")) << text << back.told;
+    EXPECT_THAT(back.samples.time_s, ::testing::Pointwise(::testing::DoubleNear(1e-9), {0.0, 0.25, 1.0})) << text;
+    EXPECT_THAT(back.samples.find("motor_voltage")->values,
+                ::testing::Pointwise(::testing::DoubleNear(1e-12), {1.5, 2.0, 4.0}));
+    EXPECT_THAT(back.samples.find("position")->values,
+                ::testing::Pointwise(::testing::DoubleNear(1e-12), {0.060, 0.059, 0.057}));
+  }
+};
+
+TEST_F(StrangeLogs, FractionsOfASecondInAColumnOfTheirOwn) {
+  const std::string rows = ";1.5;60\n", next = ";2;59\n", last = ";4;57\n";
+  for (const char* name : {"ms", "Millisecond", "MSEC", "Time [ms]"})
+    expect_three_rows("Date;Time;" + std::string(name) + ";motor_voltage [V];position [mm]\n12.04.2031;03:00:00;0" +
+                      rows + "12.04.2031;03:00:00;250" + next + "12.04.2031;03:00:01;0" + last);
+  expect_three_rows(
+      "Timestamp;Milliseconds;motor_voltage [V];position [mm]\n2031-04-12 03:00:00;000;1.5;60\n"
+      "2031-04-12 03:00:00;250;2;59\n2031-04-12 03:00:01;000;4;57\n");
+  expect_three_rows("secs;nsecs;motor_voltage [V];position [mm]\n0;0;1.5;60\n0;250000000;2;59\n1;0;4;57\n");
+}
+
+TEST_F(StrangeLogs, UnitsInTheMiddleOfANameAndBehindASlash) {
+  for (const char* head : {"Time(s)\tMotor Voltage (V) (Formula Result)\tPosition(mm) - Raw\n",
+                           "t/s\tmotor_voltage/V\tposition/mm\n", "TIME\tMOTOR VOLTAGE\tPOSITION\nSEC\tV\tMM\n",
+                           "Time\tRoot/Motor Voltage[V]{SubArray1}\tRoot/Position[mm]{1}\n"})
+    expect_three_rows(std::string(head) + "0\t1.5\t60\n0.25\t2\t59\n1\t4\t57\n");
+  expect_three_rows("TIME\tMOTOR VOLTAGE\tPOSITION\nMSEC\tMV\tMM\n0\t1500\t60\n250\t2000\t59\n1000\t4000\t57\n");
+}
+
+TEST_F(StrangeLogs, ClocksWithAZoneOrWithoutHours) {
+  const auto rows = [](const char* first, const char* second, const char* third) {
+    return "Time;motor_voltage [V];position [mm]\n" + std::string(first) + ";1.5;60\n" + second + ";2;59\n" + third +
+           ";4;57\n";
+  };
+  expect_three_rows(
+      rows("2031-04-12 03:00:00.00 +0200", "2031-04-12 03:00:00.25 +0200", "2031-04-12 03:00:01.00 +0200"));
+  expect_three_rows(rows("12.04.2031 03:00:00 +02:00", "12.04.2031 03:00:00.25 +02:00", "12.04.2031 03:00:01 +02:00"));
+  expect_three_rows(rows("02:00.00", "02:00.25", "02:01.00"));
+}
+
+TEST_F(StrangeLogs, RowsWhoseStepOnlyTheHeadTells) {
+  const auto rows = [](const std::string& head, const char* before) {
+    std::string text = head;
+    for (const char* row : {"1.5;60\n", "2;59\n", "4;57\n"}) text.append(before).append(row);
+    return text;
+  };
+  for (const std::string& text : {rows("Delta_X;0.25;0.25\nX_Value;motor_voltage [V];position [mm]\n", ";"),
+                                  rows("Sample rate: 4\nmotor_voltage [V];position [mm]\n", ""),
+                                  rows("Sample Interval [ms];250\n\nmotor_voltage [V];position [mm]\n", "")}) {
+    const ReadBack back = read_back(text);
+    EXPECT_THAT(back.samples.time_s, ::testing::ElementsAre(0.0, 0.25, 0.5)) << text;
+    EXPECT_THAT(back.told, ::testing::HasSubstr("the rows are taken as 250 ms apart, as the log's head says"));
+  }
+}
+
+TEST_F(StrangeLogs, ATimeThatIsThereIsReadWhateverStepTheHeadTells) {
+  expect_three_rows("Delta_X;0.25;0.25\nX_Value;motor_voltage [V];position [mm]\n0;1.5;60\n0.25;2;59\n1;4;57\n");
+}
+
+TEST_F(StrangeLogs, BlocksUnderTheSameHeadAreOneTable) {
+  expect_three_rows(
+      "Time;motor_voltage;position\ns;V;mm\n0;1.5;60\n0.25;2;59\n\nTime;motor_voltage;position\ns;V;mm\n1;4;57\n");
+}
+
+TEST_F(StrangeLogs, RemarksBelowTheUnitsAreNoHeader) {
+  expect_three_rows(
+      "Time\tmotor_voltage\tposition\ns\tV\tmm\nChannel comment\t\t\nDT=0.25\t\t\n0\t1.5\t60\n0.25\t2\t59\n1\t4\t57\n");
+}
+
+TEST_F(StrangeLogs, AFirstRowWithoutValuesIsNoHeader) {
+  const std::string head = "Time [s];motor_voltage [V];position [mm]\n";
+  for (const char* first : {"-0.5;NaN;---\n", "-0.5;;\n-0.25;n/a;60\n"}) {
+    const ReadBack back = read_back(head + first + "0;1.5;60\n0.25;2;59\n1;4;57\n");
+    EXPECT_THAT(back.samples.time_s, ::testing::ElementsAre(0.0, 0.25, 1.0)) << first;
+    EXPECT_THAT(back.told, ::testing::HasSubstr("incomplete_rows: skip"));
+  }
+}
+
+TEST_F(StrangeLogs, ANumberThatStandsForNoValueIsRemarkedOn) {
+  std::string text = "Time [s];motor_voltage [V];position [mm]\n";
+  for (int row = 0; row < 20; ++row)
+    text += std::to_string(row) + ";" + std::to_string(row % 3) + ";" +
+            (row % 7 == 3 ? "-9999" : std::to_string(50 + row)) + "\n";
+  EXPECT_THAT(read_back(text).told, ::testing::HasSubstr("position is −10.0 m in 3 rows, far from all others"));
+}
+
+TEST_F(StrangeLogs, OfNamesThatSayNothingTheLinesToCompleteAreTold) {
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(make("TIME,CH1 [counts],CH2\n0,100,60\n1,200,59\n2,300,57\n", "eha"), kBadInput);
+  const std::string said = ::testing::internal::GetCapturedStderr();
+  EXPECT_THAT(said, ::testing::HasSubstr("no column looks like a channel of plant eha"));
+  EXPECT_THAT(said, ::testing::HasSubstr("time: {column: \"TIME\", unit: \"s\"}"));
+  EXPECT_THAT(said, ::testing::HasSubstr("motor_voltage: {column: \"CH1 [counts]\", scale: 1, unit: \"V\"}"));
 }
 
 TEST_F(AssetNew, AColumnWithoutAUnitIsMarked) {

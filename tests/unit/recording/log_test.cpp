@@ -600,6 +600,8 @@ TEST(TimeFormatOf, IsRecognisedByTheCells) {
   EXPECT_EQ(time_format_of({"04 Mar 2031 11:59:58.25"}), "%d %b %Y %H:%M:%S");
   EXPECT_EQ(time_format_of({"2031-04-12 03:00:00.5 UTC"}), "iso8601");
   EXPECT_EQ(time_format_of({"20310412 030000.5"}), "%Y%m%d %H%M%S");
+  EXPECT_EQ(time_format_of({"2031-04-12 03:00:00.5 -0730"}), "iso8601");
+  EXPECT_EQ(time_format_of({"12:30"}), "") << "hours and minutes, or minutes and seconds";
   EXPECT_EQ(time_format_of({"20310412030000.5", "20310412030001"}), "%Y%m%d%H%M%S");
   for (const char* count : {"1772614800000", "1772614800000000", "20319912030000", "0.5"})
     EXPECT_EQ(time_format_of({count}), "") << count;

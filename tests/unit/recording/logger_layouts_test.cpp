@@ -78,9 +78,15 @@ std::string labview_file(const std::string& x_columns, const std::string& names,
 TEST_F(LoggerLayouts, APreambleWithNumbersIsNoTable) {
   const std::string names = "X_Value\tU\tx\tComment\n";
   expect_three_rows(read(labview_file("One", names, "0\t1\t60\n0.5\t2\t59\n1\t4\t57\n"), map_of("X_Value", "s")));
-  EXPECT_THAT(error_of(labview_file("No", names, "\t1\t60\n\t2\t59\n\t4\t57\n"), map_of("X_Value", "s")),
-              AllOf(HasSubstr("row 21, column 1 (X_Value, channel time)"),
-                    HasSubstr("the cell is empty; export the log with its times, as LabVIEW does with one X column")));
+  EXPECT_THAT(
+      error_of(labview_file("No", names, "\t1\t60\n\t2\t59\n\t4\t57\n"), map_of("X_Value", "s")),
+      AllOf(HasSubstr("row 21, column 1 (X_Value, channel time)"),
+            HasSubstr("the cell is empty; in the map: time: {column: row, unit: s, scale: SECONDS_BETWEEN_ROWS}")));
+  ChannelMap counted = map_of("row", "s");
+  EXPECT_THAT(error_of(labview_file("No", names, "\t1\t60\n\t2\t59\n"), counted),
+              HasSubstr("channel time: 'row': counts the rows, which needs the time between two"));
+  counted.columns["time"].scale = 0.5, counted.columns["time"].is_scaled = true;
+  expect_three_rows(read(labview_file("No", names, "\t1\t60\n\t2\t59\n\t4\t57\n"), counted));
   const ChannelMap map = {.columns = {{"time", {.column = "x-axis", .unit = "s"}},
                                       {"motor_voltage", {.column = "1", .unit = {}}},
                                       {"position", {.column = "2", .unit = {}}}},
@@ -236,11 +242,33 @@ TEST_F(LoggerLayouts, ThousandsMayBeSeparated) {
            "[mm]\"\n\"0\",\"1,234.5\",\"60\"\n\"1,500\",\"-2,345.25\",\"59\"\n\"3,000\",\"3,456.75\",\"57\"\n"));
 }
 
+TEST_F(LoggerLayouts, ARowThatIsLeftOutIsCounted) {
+  ChannelMap map = map_of("row", "ms");
+  map.columns["time"].scale = 250.0, map.columns["time"].is_scaled = true;
+  map.log.incomplete_rows = "skip";
+  expect_three_rows(read("U [mV];x [mm]\n1;60\nNaN;60\n2;59\n2;---\n4;57\n", map));
+}
+
+TEST_F(LoggerLayouts, ATimeOfMorePartsThanItHasIsRefused) {
+  const std::string text =
+      "Date;Hour;Time;ms;U [mV];x [mm]\n12.04.2031;3;03:00:00;0;1;60\n12.04.2031;3;03:00:00;500;2;59\n";
+  EXPECT_THAT(error_of(text, map_of("Date + Hour + Time + ms", "%d.%m.%Y %H:%M:%S")),
+              HasSubstr("is more than a day, a time and its fraction"));
+  EXPECT_THAT(error_of(text, map_of("Date + Time + us", "%d.%m.%Y %H:%M:%S")),
+              HasSubstr("is not a column of this log"));
+  EXPECT_THAT(error_of("Date;Time;ms;U [mV];x [mm]\n12.04.2031;03:00:00;x;1;60\n12.04.2031;03:00:00;500;2;59\n",
+                       map_of("Date + Time + ms", "%d.%m.%Y %H:%M:%S")),
+              HasSubstr("its fraction, in column 3, must be a number"));
+}
+
 // "1,234" is one thousand or one: only the other cells, or the map, tell.
 TEST_F(LoggerLayouts, ACommaThatMayBeEitherIsRefusedUnlessTheDecimalSignIsKnown) {
   const std::string text = "t [ms];U [mV];x [mm]\n0;1;60\n500;2;59\n1,000;4;57\n";
-  EXPECT_THAT(error_of("t [ms];U [mV];x [mm]\n0;1;60\n500;1,234;59\n1000;4;57\n"), HasSubstr("row 3, column 2"));
-  EXPECT_THAT(error_of(text), HasSubstr("log: {decimal: point} or {decimal: comma}"));
+  EXPECT_THAT(
+      error_of("t [ms];U [mV];x [mm]\n0;1;60\n500;1,234;59\n1000;4;57\n"),
+      AllOf(HasSubstr("row 3, column 2 (U [mV], channel motor_voltage): '1,234'"),
+            HasSubstr("may be a number with thousands or with decimals; log: {decimal: point} or {decimal: comma}")));
+  EXPECT_THAT(error_of(text), HasSubstr("row 4, column 1 (t [ms], channel time): '1,000': may be a number"));
   ChannelMap map = map_of("t", "");
   map.log.decimal = "point";
   expect_three_rows(read(text, map));

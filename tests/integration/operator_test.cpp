@@ -54,6 +54,12 @@ class Operator : public SixServices {
   [[nodiscard]] Finished acknowledge(const std::string& advisory_id) const {
     return run({"sealwatch", "acknowledge", "--config", config(), "XT03-MV2", advisory_id, "--by", "operator"});
   }
+  [[nodiscard]] Finished say(const std::string& command, const std::vector<std::string>& words) const {
+    std::vector<std::string> arguments = {"sealwatch", command, "--config", config()};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    arguments.insert(arguments.end(), {"--by", "J. Silva"});
+    return run(arguments);
+  }
   [[nodiscard]] std::string advisory_in_force() const {
     const json status = json::parse(run({"sealwatch", "status", "--config", config(), "--json"}).output);
     return status["assets"]["XT03-MV2"]["advisory"]["advisory_id"];
@@ -62,7 +68,36 @@ class Operator : public SixServices {
   pid_t up_ = -1;
 };
 
-TEST_F(Operator, OpensAnAdvisoryDownToTheWaveformWhileTheServicesRun) {
+/// What changes nothing: all these tests ask the same services.
+class OperatorWhoAsks : public Operator {
+ protected:
+  void SetUp() override {
+    own_folder_ = folder_;
+    if (shared_up_ < 0) {
+      Operator::SetUp();
+      shared_up_ = up_;
+      shared_folder_ = folder_;
+      own_folder_ = folder_.string() + "_own";
+    }
+    folder_ = shared_folder_;
+    up_ = shared_up_;
+  }
+  /// The services go on, and what they keep stays.
+  void TearDown() override { folder_ = own_folder_; }
+  static void TearDownTestSuite() {
+    kill(shared_up_, SIGTERM);
+    waitpid(shared_up_, nullptr, 0);
+    std::filesystem::remove_all(shared_folder_);
+    shared_up_ = -1;
+  }
+
+ private:
+  inline static pid_t shared_up_ = -1;
+  inline static std::filesystem::path shared_folder_;
+  std::filesystem::path own_folder_;
+};
+
+TEST_F(OperatorWhoAsks, OpensAnAdvisoryDownToTheWaveformWhileTheServicesRun) {
   const std::string state = state_directory("state").string();
   const Finished shown = run({"sealwatch", "show", "XT03-MV2", "--state", state, "--json"});
   ASSERT_EQ(shown.status, 0) << shown.output;
@@ -86,7 +121,7 @@ TEST_F(Operator, OpensAnAdvisoryDownToTheWaveformWhileTheServicesRun) {
   EXPECT_THAT(unknown.output, HasSubstr("the nearest are advisory/" + pst_id));
 }
 
-TEST_F(Operator, ForecastsFromWhatTheServicesKeep) {
+TEST_F(OperatorWhoAsks, ForecastsFromWhatTheServicesKeep) {
   const std::string page = (folder_ / "life.html").string();
   const Finished forecast = run({"sealwatch", "forecast", "--config", config(), "--state",
                                  state_directory("state").string(), "--page", page, "--json"});
@@ -102,21 +137,42 @@ TEST_F(Operator, ForecastsFromWhatTheServicesKeep) {
               HasSubstr("did you mean 'XT03-MV2'?"));
 }
 
-TEST_F(Operator, LeavesNoServiceBehindWhenUpIsKilled) {
-  kill(up_, SIGKILL);
-  waitpid(up_, nullptr, 0);
-  Finished status;
-  for (int attempt = 0; attempt < 50; ++attempt) {
-    status = run({"sealwatch", "status", "--config", config(), "--seconds", "1.5"});
-    if (status.output.find("no service is running") != std::string::npos) break;  // not merely the first of them
-  }
-  EXPECT_EQ(status.status, 1) << status.output;
-  EXPECT_THAT(status.output, HasSubstr("no service is running"));
-  up_ = start({"sealwatch", "up", "--config", config(), "--state", state_directory("state").string()},
-              folder_ / "up_again.log");
+/// What means nothing, or what every service would refuse, is not told as done.
+TEST_F(OperatorWhoAsks, IsToldThatARetractionMeansNothing) {
+  const auto retract = [&](const std::string& what, const std::string& value, const std::string& why) {
+    return run(
+        {"sealwatch", "retract", "--config", config(), "XT03-MV2", what, value, "--by", "J. Silva", "--reason", why});
+  };
+  const auto is_told = [&](const std::string& what, const std::string& value, const std::string& says) {
+    const Finished vain = retract(what, value, "wrong valve");
+    EXPECT_EQ(vain.status, 1) << vain.output;
+    EXPECT_THAT(vain.output,
+                AllOf(HasSubstr(what + ": '" + value + "'"), HasSubstr(says), Not(HasSubstr("received:"))));
+  };
+  is_told("--test", "NOSUCH", "is not a test of XT03-MV2");
+  is_told("--test", "XT03-MV2-20010101T000000Z-00000000", "changes nothing");
+  is_told("--since", "2031-01-01", "changes nothing");
+  is_told("--withdraw", "retraction/XT03-MV2/since/2031-01-01T00:00:00Z/2031-01-01T00:00:00Z", "changes nothing");
+  const Finished latin = retract("--since", "2001-01-01", "falsches Ger\xe4t");
+  EXPECT_EQ(latin.status, 2) << latin.output;
+  EXPECT_THAT(latin.output, HasSubstr("is not UTF-8"));
 }
 
-TEST_F(Operator, IsToldOfAServiceThatHangs) {
+TEST_F(OperatorWhoAsks, RefusesWhatCannotBeDone) {
+  const Finished unknown =
+      say("shelve", {"XT03-MV2", "sensor_lost/pressure_a", "--until", "2199-01-01", "--reason", "a try"});
+  EXPECT_EQ(unknown.status, 1) << unknown.output;
+  EXPECT_THAT(unknown.output, HasSubstr("'sensor_lost/pressure_a': is not an alarm of XT03-MV2"));
+  const Finished no_time = say("shelve", {"XT03-MV2", "x", "--until", "soon", "--reason", "a try"});
+  EXPECT_EQ(no_time.status, 2) << no_time.output;
+  EXPECT_THAT(no_time.output, HasSubstr("--until"));
+  const Finished not_out = say("in-service", {"XT03-MV2"});
+  EXPECT_EQ(not_out.status, 1) << not_out.output;
+  EXPECT_THAT(not_out.output, HasSubstr("is not out of service"));
+  EXPECT_EQ(say("out-of-service", {"XT09", "--reason", "x"}).status, 2);
+}
+
+TEST_F(OperatorWhoAsks, IsToldOfAServiceThatHangs) {
   const auto state_of = [](const std::string& output) {
     std::map<std::string, json> services;
     const json status = json::parse(output);
@@ -138,6 +194,20 @@ TEST_F(Operator, IsToldOfAServiceThatHangs) {
   EXPECT_EQ(machine.status, 1);
   EXPECT_EQ(state_of(machine.output).at("health_assessment")["state"], "no heartbeat");
   EXPECT_EQ(state_of(machine.output).at("state_detection")["trouble"], "");
+}
+
+TEST_F(Operator, LeavesNoServiceBehindWhenUpIsKilled) {
+  kill(up_, SIGKILL);
+  waitpid(up_, nullptr, 0);
+  Finished status;
+  for (int attempt = 0; attempt < 50; ++attempt) {
+    status = run({"sealwatch", "status", "--config", config(), "--seconds", "1.5"});
+    if (status.output.find("no service is running") != std::string::npos) break;  // not merely the first of them
+  }
+  EXPECT_EQ(status.status, 1) << status.output;
+  EXPECT_THAT(status.output, HasSubstr("no service is running"));
+  up_ = start({"sealwatch", "up", "--config", config(), "--state", state_directory("state").string()},
+              folder_ / "up_again.log");
 }
 
 /// Whichever of them misses a replacement would count other tests than the rest, and refuse its confirmation.
@@ -315,12 +385,6 @@ class OperatorOfAlarms : public Operator {
     }
     return ::testing::AssertionFailure() << alarm.dump();
   }
-  [[nodiscard]] Finished say(const std::string& command, const std::vector<std::string>& words) const {
-    std::vector<std::string> arguments = {"sealwatch", command, "--config", config()};
-    arguments.insert(arguments.end(), words.begin(), words.end());
-    arguments.insert(arguments.end(), {"--by", "J. Silva"});
-    return run(arguments);
-  }
 };
 
 TEST_F(OperatorOfAlarms, ShelvesAcknowledgesAndTakesOutOfService) {
@@ -381,41 +445,6 @@ TEST_F(OperatorOfAlarms, ALostJournalHasBackWhatWasSaidOfThem) {
   const std::string audit = run({"sealwatch", "audit", "--config", config(), "--state", state}).output;
   for (const char* act : {"alarm_shelved", "asset_out_of_service"})
     EXPECT_THAT(audit, ContainsRegex(std::string("advisory_generation.*") + act + ".*fetched back from"));
-}
-
-TEST_F(OperatorOfAlarms, RefusesWhatCannotBeDone) {
-  const Finished unknown =
-      say("shelve", {"XT03-MV2", "sensor_lost/pressure_a", "--until", "2199-01-01", "--reason", "a try"});
-  EXPECT_EQ(unknown.status, 1) << unknown.output;
-  EXPECT_THAT(unknown.output, HasSubstr("'sensor_lost/pressure_a': is not an alarm of XT03-MV2"));
-  const Finished no_time = say("shelve", {"XT03-MV2", "x", "--until", "soon", "--reason", "a try"});
-  EXPECT_EQ(no_time.status, 2) << no_time.output;
-  EXPECT_THAT(no_time.output, HasSubstr("--until"));
-  const Finished not_out = say("in-service", {"XT03-MV2"});
-  EXPECT_EQ(not_out.status, 1) << not_out.output;
-  EXPECT_THAT(not_out.output, HasSubstr("is not out of service"));
-  EXPECT_EQ(say("out-of-service", {"XT09", "--reason", "x"}).status, 2);
-}
-
-/// What means nothing, or what every service would refuse, is not told as done.
-TEST_F(Operator, IsToldThatARetractionMeansNothing) {
-  const auto retract = [&](const std::string& what, const std::string& value, const std::string& why) {
-    return run(
-        {"sealwatch", "retract", "--config", config(), "XT03-MV2", what, value, "--by", "J. Silva", "--reason", why});
-  };
-  const auto is_told = [&](const std::string& what, const std::string& value, const std::string& says) {
-    const Finished vain = retract(what, value, "wrong valve");
-    EXPECT_EQ(vain.status, 1) << vain.output;
-    EXPECT_THAT(vain.output,
-                AllOf(HasSubstr(what + ": '" + value + "'"), HasSubstr(says), Not(HasSubstr("received:"))));
-  };
-  is_told("--test", "NOSUCH", "is not a test of XT03-MV2");
-  is_told("--test", "XT03-MV2-20010101T000000Z-00000000", "changes nothing");
-  is_told("--since", "2031-01-01", "changes nothing");
-  is_told("--withdraw", "retraction/XT03-MV2/since/2031-01-01T00:00:00Z/2031-01-01T00:00:00Z", "changes nothing");
-  const Finished latin = retract("--since", "2001-01-01", "falsches Ger\xe4t");
-  EXPECT_EQ(latin.status, 2) << latin.output;
-  EXPECT_THAT(latin.output, HasSubstr("is not UTF-8"));
 }
 
 /// A retraction reaches every layer: what the status says of regions and health is said anew at once.

@@ -148,7 +148,7 @@ Conclusion HealthAssessment::receive(const Message& input) {
 
 /// An answer to a retraction speaks of the tests before it, which may wait for their features.
 std::optional<std::string> HealthAssessment::next_report(const AssetState& state) {
-  const auto answer = state.reports.first_of_no_test(state.complete);
+  auto answer = state.reports.first_of_no_test(state.complete);
   if (answer && (!state.complete.empty() || state.reports.is_next(*answer))) return answer;
   return state.complete.empty() ? std::nullopt : std::optional(state.complete);
 }
@@ -156,11 +156,10 @@ std::optional<std::string> HealthAssessment::next_report(const AssetState& state
 /// One whose health is concluded already comes again after a restart because its test was kept.
 void HealthAssessment::take_report(AssetState& state, const StateReport& report, Conclusion& conclusion) const {
   const std::optional<bool> admissible = state.discrepancies.concluded(report.header.pst_id);
-  if (retraction_answered_by(report))
-    state.reports.add(report, conclusion);
-  else if (report.header.pst_id.empty())
+  const bool is_answer = retraction_answered_by(report).has_value();
+  if (!is_answer && report.header.pst_id.empty())
     conclusion.consumed.push_back(report.header.message_id);
-  else if (admissible && explainer_)
+  else if (!is_answer && admissible && explainer_)
     settle(state, report, *admissible, conclusion);
   else
     state.reports.add(report, conclusion);

@@ -218,8 +218,8 @@ void Analysis::note_laws_not_asked() {
 }
 
 void Analysis::say_what_was_cut(Explanation& result) {
-  if (result.not_asked.empty()) result.not_asked.emplace_back("further steps of what was being fitted");
-  result.notes.push_back("Not asked, as time was up: " + joined(result.not_asked, "; and ") + ".");
+  if (result.not_asked.empty()) result.not_asked.emplace_back("further steps of the fit in progress");
+  result.notes.push_back("Not tried, as time was up: " + joined(result.not_asked, "; and ") + ".");
   // What is not explained may be by what was not asked: a law is no surer than its share.
   for (FoundEffect& effect : result.effects) {
     effect.probability = std::min(effect.probability, result.explained_share);
@@ -227,7 +227,7 @@ void Analysis::say_what_was_cut(Explanation& result) {
   }
   const std::string more = "Give the analysis more time (--time-limit)";
   if (result.next_test.starts_with(more)) return;
-  result.summary = "The time limit cut the search: not everything was asked. " + result.summary;
+  result.summary = "The time limit ended the search: not everything was tried. " + result.summary;
   const bool alone = result.verdict == Verdict::undetermined || result.next_test.empty();
   result.next_test = alone ? more + "." : more + ". Then: " + result.next_test;
 }

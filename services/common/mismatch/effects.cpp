@@ -145,11 +145,12 @@ double engineering_share(const FoundEffect& effect, const Effect& chosen, const 
 }
 
 constexpr const char* kContains =
-    "It contains the law that was chosen and fits no better with what it has more: no recording can exclude it.";
+    "It contains the chosen law, and what it adds does not improve the fit: no recording can exclude it.";
 
 // What a difference of the criterion means to a reader.
-std::string stands_behind(double behind) {
-  return "stands " + number(behind) + " behind (squared misfit and a penalty for each parameter; 12 decides).";
+std::string is_worse_by(double behind) {
+  return "is worse by " + number(behind) +
+         " (the criterion: misfit plus a penalty for each parameter; 12 is decisive).";
 }
 
 // How far each alternative stands behind the best by the criterion. In a gross misfit that is no proof: the nearest
@@ -220,18 +221,18 @@ void weigh(FoundEffect& effect, const Effect& chosen, const std::vector<Trial>& 
     effect.alternatives.push_back({.what = law_at(other),
                                    .misfit_above_best = std::max(behind, 0.0),
                                    .why_not = behind < kCannotTell
-                                                  ? "These recordings cannot tell it from the law that was chosen."
+                                                  ? "These recordings cannot distinguish it from the chosen law."
                                               : contains ? kContains
                                               : trial.model->optimum.out_of_reach
-                                                  ? "Cut when it could not win any more, it " + stands_behind(behind)
-                                                  : "Refitted in its place it " + stands_behind(behind)});
+                                                  ? "Stopped when it could no longer win, it " + is_worse_by(behind)
+                                                  : "Refitted in its place, it " + is_worse_by(behind)});
   }
   if (not_asked != nullptr && !weight.contains({std::string(not_asked->id), chosen.element})) {
     weight[{std::string(not_asked->id), chosen.element}] = 1.0;
     effect.indistinguishable.push_back(law_at({not_asked, chosen.element}));
     effect.alternatives.push_back({.what = effect.indistinguishable.back(),
                                    .misfit_above_best = 0.0,
-                                   .why_not = "Not asked, as time was up: the law that was chosen contains it."});
+                                   .why_not = "Not tried, as time was up: the chosen law contains it."});
   }
   double all = 0.0, element = 0.0;
   for (const auto& [key, share] : weight) {
@@ -313,8 +314,7 @@ std::string against_elsewhere(const FoundEffect& effect) {
         (best == nullptr || other.misfit_above_best < best->misfit_above_best))
       best = &other;
   if (best == nullptr) return "No law that sits elsewhere came near it.";
-  return "The best law that sits elsewhere (" + law_in_words(best->what) + ") " +
-         stands_behind(best->misfit_above_best);
+  return "The best law that sits elsewhere (" + law_in_words(best->what) + ") " + is_worse_by(best->misfit_above_best);
 }
 
 }  // namespace

@@ -14,18 +14,18 @@ constexpr const char* kTestsOfOneTime =
 }  // namespace
 
 WhyNone cannot_be_asked(const Error& why) {
-  return {.summary = "The model was fitted, but it could not be asked for what is missing (" + reason_in_words(why) +
+  return {.summary = "The model was fitted, but the search for what is missing failed (" + reason_in_words(why) +
                      "): nothing can be said of these recordings.",
           .next_test = "Check the recorded input around that time, or analyse without this recording."};
 }
 
 WhyNone time_was_up() {
-  return {.summary = "The time limit ended the analysis before it could be asked what is missing.",
+  return {.summary = "The time limit ended the analysis before the search for what is missing.",
           .next_test = "Give the analysis more time (--time-limit), or fewer and shorter recordings."};
 }
 
 WhyNone nothing_moves() {
-  return {.summary = "The actuator does not move in these recordings: there is nothing to see.",
+  return {.summary = "The actuator does not move in these recordings: there is nothing to analyse.",
           .next_test =
               "Record tests in which the piston moves out, holds and comes back, under several loads "
               "and speeds."};

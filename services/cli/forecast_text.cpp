@@ -80,7 +80,7 @@ std::string verdict_on(int of_80, int of_95, int n) {
   if (n < kFewestToJudge) return {};
   const double chance = std::min(at_most(of_80, n, 0.80), at_most(of_95, n, 0.95));
   if (chance < kHardlyChance) return ": too few, the intervals are too narrow";
-  return chance < kUnremarkable ? ": few, but that may be chance" : ": as it should be";
+  return chance < kUnremarkable ? ": few, but that may be chance" : ": as expected";
 }
 
 }  // namespace

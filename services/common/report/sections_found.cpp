@@ -111,7 +111,7 @@ std::string effect_html(const FoundEffect& effect) {
       std::string("Probability ").append(text::percent_text(effect.probability)).append(" among the laws tried; ");
   sure.append(text::percent_text(effect.element_probability))
       .append(
-          " that it sits in this element (not calibrated). Without it, the BIC (squared misfit plus a penalty for each "
+          " that it sits in this element (not calibrated). Without it, the criterion (misfit plus a penalty for each "
           "parameter) is ")
       .append(text::number_text(-effect.delta_bic, 3))
       .append(" higher; 12 is decisive. ")

@@ -95,10 +95,10 @@ TEST(ScoredLine, JudgesWhereTheFiguresBearIt) {
       "  scored           of the last 8 forecasts, 3 months ahead, 4 came true within their 80 % interval, 8 within "
       "95 %: few, but that may be chance\n");
   EXPECT_THAT(scored_line(scored(8, 3, 8)), HasSubstr("95 %: too few, the intervals are too narrow"));
-  EXPECT_THAT(scored_line(scored(8, 5, 8)), HasSubstr("95 %: as it should be"));
+  EXPECT_THAT(scored_line(scored(8, 5, 8)), HasSubstr("95 %: as expected"));
   EXPECT_THAT(scored_line(scored(8, 5, 6)), HasSubstr("95 %: few, but that may be chance"));
   EXPECT_THAT(scored_line(scored(8, 5, 5)), HasSubstr("95 %: too few"));
-  EXPECT_THAT(scored_line(scored(8, 8, 8)), HasSubstr("as it should be"));
+  EXPECT_THAT(scored_line(scored(8, 8, 8)), HasSubstr("as expected"));
   EXPECT_THAT(scored_line(scored(4, 1, 4)), HasSubstr("4 within 95 %\n")) << "four tell nothing";
   EXPECT_THAT(scored_line(scored(8, 8, 8, 0.4)), HasSubstr("95 %; the forecaster has probably drifted\n"));
   EXPECT_EQ(scored_line({}), "");

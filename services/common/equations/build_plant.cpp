@@ -213,11 +213,11 @@ class Builder {
   // Allowed local error of a step: a share of the state's size; without one a share of the noise of the output that
   // shows it, and no more than adds up in a second to the error that a state may have whose derivative it is.
   [[nodiscard]] double scale_of(std::size_t state) const {
-    constexpr double kOfSize = 1e-7, kSecond = 1.0;
-    if (text_.states[state].size) return kOfSize * *text_.states[state].size;
+    constexpr double kSecond = 1.0;
+    if (text_.states[state].size) return kErrorOfSize * *text_.states[state].size;
     double scale = scale_by_noise(state);
     for (std::size_t k = 0; k < rates_.size(); ++k) {
-      const double of_integral = text_.states[k].size ? kOfSize * *text_.states[k].size : scale_by_noise(k);
+      const double of_integral = text_.states[k].size ? kErrorOfSize * *text_.states[k].size : scale_by_noise(k);
       if (state_at(rates_[k]) == static_cast<int>(state) && of_integral > 0.0)
         scale = std::min(scale, of_integral / kSecond);
     }

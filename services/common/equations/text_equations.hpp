@@ -10,6 +10,9 @@
 
 namespace sealwatch::equations {
 
+/// Of a state's size that one step's integration may err by.
+inline constexpr double kErrorOfSize = 1e-7;
+
 /// A function of the plant and its derivatives: rows of nodes.
 struct FunctionNodes {
   std::vector<Node> values;

@@ -357,6 +357,16 @@ TEST(ExplainedFmu, AnOutputTakesTheNameOfItsAlias) {
   expect_same(exported, "height", "height", 2e-8);
 }
 
+/// Imported again, each state is integrated as exactly as before: its size went along as the nominal value.
+void expect_same_sizes(const RuntimePlant& before, const std::string& file) {
+  const auto again = read_plant_file(file);
+  ASSERT_TRUE(again) << again.error().front().describe();
+  const std::vector<RuntimeState>& states = again->built.plant.states;
+  ASSERT_EQ(states.size(), before.states.size());
+  for (std::size_t k = 0; k < states.size(); ++k)
+    EXPECT_NEAR(states[k].scale / before.states[k].scale, 1.0, 1e-9) << before.description.states[k].name;
+}
+
 /// A recording of a compiled actuator: its inputs in a few steps, its outputs at their start.
 TimeSeries stroke_of(const PlantDescription& plant) {
   TimeSeries samples;
@@ -412,6 +422,7 @@ TEST(ExportedBuiltInPlant, SimulatesAgainWhatItsTextDoes) {
     std::ofstream(folder / "again.yaml") << around;
     const auto again = load_plant((folder / "again.yaml").string());
     ASSERT_TRUE(again) << again.error().front().describe();
+    expect_same_sizes(read->built.plant, (folder / "again.yaml").string());
     const TimeSeries samples = stroke_of(**plant);
     const auto by_text = PlantSimulation::create(asset, samples);
     const auto unit = PlantSimulation::create(nominal_asset((*again)->name), samples);

@@ -23,6 +23,7 @@ using equations::Node;
 struct Row {
   std::string name, unit, meaning;
   double start = 0.0;
+  double nominal = 0.0;  ///< 0: not said
 };
 
 std::string escaped(const std::string& text) {
@@ -90,11 +91,13 @@ class Exporter {
     const auto start = text.initial_state(values, nothing);
     if (!start) return fail(start.error());
     for (std::size_t k = 0; k < plant.states.size(); ++k)
-      states_.push_back({plant.states[k].name, plant.states[k].unit, plant.states[k].meaning, (*start)[k]});
+      states_.push_back({plant.states[k].name, plant.states[k].unit, plant.states[k].meaning, (*start)[k],
+                         plant_.states[k].scale / equations::kErrorOfSize});
     for (const ActiveTerm& term : terms_.active)  // in the order of their hidden states
       if (term.hidden >= 0)
         states_.push_back({terms_.hidden_names[static_cast<std::size_t>(term.hidden)],
-                           std::string(term.law->hidden->unit), "hidden state of a law", 0.0});
+                           std::string(term.law->hidden->unit), "hidden state of a law", 0.0,
+                           terms_.hidden_scales[static_cast<std::size_t>(term.hidden)]});
     for (const PhysicsParameter& row : terms_.parameters)
       parameters_.push_back(
           {row.name, std::string(row.parameter->unit), std::string(row.parameter->meaning), row.setting.value});
@@ -138,6 +141,9 @@ class Exporter {
       for (const Row& row : *rows) out << c_number(row.start) << ", ";
       out << "0.0};\n";
     }
+    out << "static const double nominal_states[] = {";
+    for (const Row& row : states_) out << c_number(row.nominal) << ", ";
+    out << "0.0};\n";
     return out.str() + "\n";
   }
 
@@ -235,6 +241,7 @@ static void model_outputs(double t, const double* x, const double* u, const doub
       out << "<Float64 name=\"" << escaped(list[k].name) << "\" valueReference=\"" << reference + k
           << "\" description=\"" << escaped(list[k].meaning) << "\" " << attributes << " unit=\""
           << escaped(list[k].unit) << "\"";
+      if (list[k].nominal > 0.0) out << " nominal=\"" << c_number(list[k].nominal) << "\"";
       if (with_start) out << " start=\"" << c_number(list[k].start) << "\"";
       out << "/>\n";
     }
@@ -266,6 +273,7 @@ static void model_outputs(double t, const double* x, const double* u, const doub
       out << "<ScalarVariable name=\"" << escaped(list[k].name) << "\" valueReference=\""
           << static_cast<std::size_t>(reference) + k << "\" description=\"" << escaped(list[k].meaning) << "\" "
           << attributes << "><Real unit=\"" << escaped(list[k].unit) << "\"";
+      if (list[k].nominal > 0.0) out << " nominal=\"" << c_number(list[k].nominal) << "\"";
       if (with_start) out << " start=\"" << c_number(list[k].start) << "\"";
       out << "/></ScalarVariable>\n";
     }

@@ -103,8 +103,10 @@ class WrapperExporter {
     };
     for (const ActiveTerm& term : terms_.active)
       if (term.hidden >= 0)
-        add(description_.hidden, {terms_.hidden_names[static_cast<std::size_t>(term.hidden)],
-                                  std::string(term.law->hidden->unit), "hidden state of a law"});
+        add(description_.hidden, {.name = terms_.hidden_names[static_cast<std::size_t>(term.hidden)],
+                                  .unit = std::string(term.law->hidden->unit),
+                                  .meaning = "hidden state of a law",
+                                  .nominal = terms_.hidden_scales[static_cast<std::size_t>(term.hidden)]});
     for (const OwnVariable& hidden : std::vector(description_.hidden))
       add(description_.hidden_rates, {"der(" + hidden.name + ")", "", "rate of a law's hidden state"});
     collect_channels(next);

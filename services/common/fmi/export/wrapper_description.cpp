@@ -145,6 +145,7 @@ class Rewriter {
     if (initial != nullptr) variable.append_attribute("initial").set_value(initial);
     xml_node real = third_ ? variable : variable.append_child("Real");
     if (!row.unit.empty()) real.append_attribute("unit").set_value(row.unit.c_str());
+    if (row.nominal > 0.0) real.append_attribute("nominal").set_value(c_number(row.nominal).c_str());
     if (with_start) real.append_attribute("start").set_value(c_number(row.start).c_str());
     variables_.push_back(variable);
     return variables_.size();

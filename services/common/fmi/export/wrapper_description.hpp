@@ -14,6 +14,7 @@ struct OwnVariable {
   std::string name, unit, meaning;
   double start = 0.0;
   std::uint32_t reference = 0;
+  double nominal = 0.0;      ///< 0: not said
   bool takes_alias = false;  ///< it is what an alias of its name stands for in the FMU
 };
 

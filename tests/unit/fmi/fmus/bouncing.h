@@ -12,6 +12,7 @@
 #define DISCRETES 1
 enum { GRAVITY, E_, W_ };
 static const double start_states[] = {1.0, 0.0};
+static const double nominal_states[] = {1.0, 1.0};
 static const double start_inputs[] = {0.0};
 static const double start_parameters[] = {9.81, 0.7, 3.0};
 static void model_derivatives(double t, const double* x, const double* u, const double* p, double* dx) {

@@ -9,6 +9,7 @@
 #define DISCRETES 1
 enum { TAU, DROP, GAIN, T_HI };
 static const double start_states[] = {320.0};
+static const double nominal_states[] = {1.0};
 static const double start_inputs[] = {0.0};
 static const double start_parameters[] = {200.0, 8.0, 0.05, 330.0};
 static void model_derivatives(double t, const double* x, const double* u, const double* p, double* dx) {

@@ -6,6 +6,7 @@
 #define OUTPUTS 1
 enum { M_, F_V, K_F };
 static const double start_states[] = {0.0, 0.0};
+static const double nominal_states[] = {1.0, 1.0};
 static const double start_inputs[] = {0.0};
 static const double start_parameters[] = {95.1, 203.5, 35.15};
 static void model_derivatives(double t, const double* x, const double* u, const double* p, double* dx) {

@@ -5,6 +5,7 @@
 #define PARAMETERS 0
 #define OUTPUTS 1
 static const double start_states[] = {0.0};
+static const double nominal_states[] = {1.0};
 static const double start_inputs[] = {0.0};
 static const double start_parameters[] = {0.0};
 static double share_of(double input) { return input / 1e-9; }

@@ -10,6 +10,7 @@ static const double start_states[] = {0.0 / 0.0, 0.0};
 #else
 static const double start_states[] = {0.0, 0.0};
 #endif
+static const double nominal_states[] = {1.0, 1.0};
 static const double start_inputs[] = {0.0};
 #ifdef UNSET
 static const double start_parameters[] = {20.0, 0.0 / 0.0, 1e4, 100.0};

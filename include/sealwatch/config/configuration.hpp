@@ -40,6 +40,7 @@ struct ServiceConfig {
   std::string journal;               ///< SOCI connection string; default "sqlite3://<state_directory>/<service>.db"
   std::string recordings_directory;  ///< data_acquisition only: recordings dropped here are taken in; "" none
   RetentionConfig recordings_retention = {};  ///< of those that were seen to, in each of done/ and rejected/
+  double deadline_s = 120.0;                  ///< processor time for one message (runtime/workers.hpp)
 };
 
 /// One of the forecasters that judge every history side by side; what the methods are: forecast/forecaster.hpp.

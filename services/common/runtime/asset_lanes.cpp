@@ -16,8 +16,6 @@ constexpr std::size_t kMostKept = 64;
 constexpr unsigned kMostFailures = 5;
 constexpr unsigned kMostDeaths = 50;
 
-std::string seconds_text(std::chrono::milliseconds time) { return std::to_string(time.count() / 1000) + " s"; }
-
 }  // namespace
 
 AssetLanes::AssetLanes(LayerMaker make, Load load, std::function<void()> on_result, const Options& options)
@@ -61,12 +59,12 @@ Status AssetLanes::advance() {
   look_at_trials();
   if (const auto stuck = workers_.look_after()) {
     record_.fail(*stuck);
-    return sealwatch::fail(Error{.file = {},
-                                 .place = *stuck,
-                                 .value = {},
-                                 .rule = "is not done within " + seconds_text(options_.workers.deadline) +
-                                         " of processor time, and does not stop",
-                                 .advice = "the service starts again, and sets the message aside if it is to blame"});
+    return sealwatch::fail(Error{
+        .file = {},
+        .place = *stuck,
+        .value = {},
+        .rule = "is not done within " + in_seconds(options_.workers.deadline) + " of processor time, and does not stop",
+        .advice = "the service starts again, and sets the message aside if it is to blame"});
   }
   while (!ready_.empty())
     for (const std::string& asset_id : std::exchange(ready_, {}))
@@ -104,7 +102,7 @@ Status AssetLanes::begin_next(const std::string& asset_id, Lane& lane) {
 
 void AssetLanes::try_first(const std::string& asset_id, Lane& lane) {
   const auto work = [layer = lane.layer, input = lane.receiving->message] { (void)completed(layer->receive(*input)); };
-  lane.trial = Trial::begin(work, options_.workers.deadline);
+  lane.trial = Trial::begin(work, options_.workers.deadline, options_.workers.by_clock);
   if (lane.trial)
     trials_.insert(asset_id);
   else
@@ -156,8 +154,7 @@ void AssetLanes::compute(const std::string& asset_id, Lane& lane, std::shared_pt
     try {
       raw.result.conclusion = work(stop);
       if (!of_later) raw.held = layer->held();
-      if (stop.stop_requested())
-        raw.result.failure = "it did not end within " + seconds_text(options_.workers.deadline);
+      if (stop.stop_requested()) raw.result.failure = "it did not end within " + in_seconds(options_.workers.deadline);
     } catch (const std::bad_alloc&) {
       raw.result.failure = "it took more memory than there is";
     } catch (const std::exception& raised) {

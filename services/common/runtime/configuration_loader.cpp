@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 constexpr NumberRule kDomain{.min = 0, .max = 232, .words = "must be a whole number from 0 to 232"};
 constexpr NumberRule kFiles{.min = 1, .max = 1000, .words = "must be a whole number from 1 to 1000"};
 
+constexpr NumberRule kDeadline{.min = 0.1, .max = 86400, .words = "must be a number of seconds from 0.1 to 86400"};
 constexpr NumberRule kLeadTime{.min = 0, .max = 120, .words = "must be a number of months from 0 to 120"};
 constexpr NumberRule kInterval{.min = 0.1, .max = 600, .words = "must be a number of months from 0.1 to 600"};
 /// A valve with 1e-3 per hour fails every six weeks: a rate per 1e6 hours (OREDA) that was not divided.
@@ -80,6 +81,7 @@ void read_services(YamlMap& root, Configuration& configuration) {
     ServiceConfig& config = configuration.services[service];
     map->read("enabled", config.enabled);
     map->read("journal", config.journal);
+    map->read("deadline_s", config.deadline_s, kDeadline);
     if (const Status known = Journal::check_kind(config.journal); !config.journal.empty() && !known)
       map->fault("journal", without_password(config.journal), known.error().rule, known.error().advice);
     if (service == "data_acquisition") {

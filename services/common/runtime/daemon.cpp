@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <filesystem>
@@ -37,6 +38,9 @@ constexpr int kInternalFailure = 3;
 constexpr std::chrono::milliseconds kHangs{60'000};
 /// What still computes so long after a stop is cut: it is done again from the journal.
 constexpr std::chrono::milliseconds kPatienceAtEnd{100};
+
+/// What computes with several threads, or waits for a busy processor, takes so many times its deadline by the clock.
+constexpr int kByTheClock = 5;
 
 struct Arguments {
   std::string config = "config";
@@ -158,6 +162,10 @@ RunnerOptions runner_options(const DaemonParts& parts, const Configuration& conf
   options.advice_of_output = parts.advice_of_output;
   if (parts.make_local_inputs) options.local_inputs = parts.make_local_inputs(configuration);
   for (const AssetConfig& asset : configuration.assets) options.assets.push_back(asset.asset_id);
+  const std::chrono::duration<double> deadline(configuration.services.at(parts.service).deadline_s);
+  Workers::Limits& workers = options.lanes.workers;
+  workers.deadline = std::chrono::round<std::chrono::milliseconds>(deadline);
+  workers.by_clock = std::max(workers.by_clock, kByTheClock * workers.deadline);
   options.lanes.try_record =
       (std::filesystem::path(configuration.state_directory) / (parts.service + ".tries")).string();
   options.heartbeat.on_beat = [](std::chrono::milliseconds since_main_thread) {

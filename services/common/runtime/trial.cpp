@@ -71,7 +71,8 @@ void say(int words, const char* text) { [[maybe_unused]] const auto written = ::
 
 }  // namespace
 
-std::unique_ptr<Trial> Trial::begin(const std::function<void()>& work, std::chrono::milliseconds deadline) {
+std::unique_ptr<Trial> Trial::begin(const std::function<void()>& work, std::chrono::milliseconds deadline,
+                                    std::chrono::milliseconds by_clock) {
   std::array<int, 2> words{};
   if (::pipe2(words.data(), O_CLOEXEC) != 0) return nullptr;
   const pid_t maker = ::getpid();
@@ -83,11 +84,15 @@ std::unique_ptr<Trial> Trial::begin(const std::function<void()>& work, std::chro
     ::close(words[0]);
     return nullptr;
   }
-  return std::unique_ptr<Trial>(new Trial(process, words[0], deadline));
+  return std::unique_ptr<Trial>(new Trial(process, words[0], deadline, by_clock));
 }
 
-Trial::Trial(pid_t process, int words, std::chrono::milliseconds deadline)
-    : process_(process), words_(words), begun_(std::chrono::steady_clock::now()), deadline_(deadline) {}
+Trial::Trial(pid_t process, int words, std::chrono::milliseconds deadline, std::chrono::milliseconds by_clock)
+    : process_(process),
+      words_(words),
+      begun_(std::chrono::steady_clock::now()),
+      deadline_(deadline),
+      by_clock_(by_clock) {}
 
 Trial::~Trial() {
   if (process_ > 0) {
@@ -104,7 +109,7 @@ std::string Trial::told() const {
 }
 
 bool Trial::is_overdue() const {
-  if (std::chrono::steady_clock::now() - begun_ > Workers::kByTheClock * deadline_) return true;
+  if (std::chrono::steady_clock::now() - begun_ > by_clock_) return true;
   clockid_t clock{};
   timespec used{};
   if (::clock_getcpuclockid(process_, &clock) != 0 || ::clock_gettime(clock, &used) != 0) return false;
@@ -116,7 +121,7 @@ std::optional<std::string> Trial::result() {
   const pid_t ended = ::waitpid(process_, &status, WNOHANG);
   if (ended == 0) {
     if (!is_overdue()) return std::nullopt;
-    return "it did not end within " + std::to_string(deadline_.count() / 1000) + " s";
+    return "it did not end within " + in_seconds(deadline_);
   }
   process_ = -1;
   if (ended < 0) return "it ended in an unknown way";

@@ -17,10 +17,11 @@ namespace sealwatch {
 
 class Trial {
  public:
-  /// `deadline`: of a processor's time, or five times as much by the clock, as for other work (workers.hpp). None where
-  /// no process can be made.
+  /// `deadline`: of a processor's time, or `by_clock`, as for other work (workers.hpp). None where no process can be
+  /// made.
   [[nodiscard]] static std::unique_ptr<Trial> begin(const std::function<void()>& work,
-                                                    std::chrono::milliseconds deadline);
+                                                    std::chrono::milliseconds deadline,
+                                                    std::chrono::milliseconds by_clock);
   ~Trial();
   Trial(const Trial&) = delete;
   Trial& operator=(const Trial&) = delete;
@@ -28,7 +29,7 @@ class Trial {
   [[nodiscard]] std::optional<std::string> result();
 
  private:
-  Trial(pid_t process, int words, std::chrono::milliseconds deadline);
+  Trial(pid_t process, int words, std::chrono::milliseconds deadline, std::chrono::milliseconds by_clock);
   [[nodiscard]] std::string told() const;
   [[nodiscard]] bool is_overdue() const;
 
@@ -36,6 +37,7 @@ class Trial {
   int words_;  ///< what it says before it ends
   std::chrono::steady_clock::time_point begun_;
   std::chrono::milliseconds deadline_;
+  std::chrono::milliseconds by_clock_;
 };
 
 }  // namespace sealwatch

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "services/common/text/numbers.hpp"
+
 namespace sealwatch {
 namespace {
 
@@ -27,6 +29,10 @@ double processor_seconds(pthread_t thread) {
 }
 
 }  // namespace
+
+std::string in_seconds(std::chrono::milliseconds time) {
+  return text::general(std::chrono::duration<double>(time).count()) + " s";
+}
 
 Workers::~Workers() {
   {
@@ -80,7 +86,7 @@ void Workers::run(Worker& worker, Crew& crew) {
 }
 
 bool Workers::is_overdue(const Worker& worker, Clock::time_point now) const {
-  if (now - worker.begun > kByTheClock * limits_.deadline) return true;
+  if (now - worker.begun > limits_.by_clock) return true;
   if (now - worker.begun < limits_.deadline) return false;  // saves asking for processor time
   const double used_s =
       processor_seconds(const_cast<std::thread&>(worker.thread).native_handle()) - worker.processor_s_at_begin;

@@ -2,8 +2,8 @@
 // work comes, so that a piece of work that takes long holds up no other. Long work has a few threads of its own, as each
 // piece of it may take much memory, and these give way to all others where processors are few.
 //
-// Each piece of work has a deadline: so much time of its thread's processor, or five times as much by the clock, as it
-// may use other threads or wait. Then it is asked to stop; if it does not, within the grace, it is stuck: a thread
+// Each piece of work has a deadline: so much time of its thread's processor, or so much more by the clock, as it may use
+// other threads or wait, for one that is busy too. Then it is asked to stop; if it does not, within the grace, it is stuck: a thread
 // cannot be ended from outside, so that only the end of the process helps.
 #pragma once
 
@@ -22,12 +22,16 @@
 
 namespace sealwatch {
 
+/// 120000 ms -> "120 s", 500 ms -> "0.5 s".
+[[nodiscard]] std::string in_seconds(std::chrono::milliseconds time);
+
 class Workers {
  public:
   struct Limits {
     std::size_t threads = 16;
     std::size_t long_work = 2;
-    std::chrono::milliseconds deadline{120'000};
+    std::chrono::milliseconds deadline{120'000};  ///< of processor time
+    std::chrono::milliseconds by_clock{600'000};
     std::chrono::milliseconds grace{10'000};
   };
   struct Work {
@@ -36,9 +40,6 @@ class Workers {
     std::function<void(const std::stop_token&)> run;  ///< raises nothing
     std::stop_source stop = {};
   };
-
-  /// As many times the deadline may pass by the clock.
-  static constexpr int kByTheClock = 5;
 
   explicit Workers(const Limits& limits) : limits_(limits) {}
   /// Asks all to stop, forgets what has not begun, and waits for the rest.

@@ -49,6 +49,9 @@ const BadCase kBadCases[] = {
      "sealwatch.yaml: line 1, key domain: '233': must be a whole number from 0 to 232"},
     {"domain_broken", "domain: 1.5\n",
      "sealwatch.yaml: line 1, key domain: '1.5': must be a whole number from 0 to 232"},
+    {"deadline", "services: {state_detection: {deadline_s: 0}}\n",
+     "sealwatch.yaml: line 1, key services.state_detection.deadline_s: '0': must be a number of seconds from 0.1 to "
+     "86400"},
     {"not_a_bool", "services: {state_detection: {enabled: 1}}\n",
      "sealwatch.yaml: line 1, key services.state_detection.enabled: '1': must be true or false"},
     {"level", "logging:\n  level: inf\n",
@@ -88,7 +91,7 @@ const BadCase kBadCases[] = {
      "0, at most 1e-3"},
     {"recordings_of_another_service", "services: {state_detection: {recordings_directory: in}}\n",
      "sealwatch.yaml: line 1, key services.state_detection.recordings_directory: 'recordings_directory': is not a "
-     "known key; known are: enabled, journal"},
+     "known key; known are: enabled, journal, deadline_s"},
     {"forecast_method", "services:\n  prognostic_assessment:\n    forecasters:\n      - {method: ols_drifft}\n",
      "sealwatch.yaml: line 4, key services.prognostic_assessment.forecasters[0].method: 'ols_drifft': is not known; "
      "did "
@@ -106,7 +109,7 @@ const BadCase kBadCases[] = {
      "above 0, at most 0.5"},
     {"advice_of_another_service", "services: {state_detection: {advice: {}}}\n",
      "sealwatch.yaml: line 1, key services.state_detection.advice: 'advice': is not a known key; known are: enabled, "
-     "journal"},
+     "journal, deadline_s"},
     {"site_twice", "sites:\n  - site: a\n  - site: a\n",
      "sealwatch.yaml: line 3, key sites[1].site: 'a': is there twice; name each site once"},
     {"site_without_name", "sites:\n  - booking_lead_time_months: 3\n",
@@ -281,7 +284,7 @@ state_directory: /var/s
 cyclonedds_uri: <x/>
 logging: {level: debug, directory: logs, rotate_at_MB: 0.5, rotated_files: 3}
 services:
-  data_acquisition: {enabled: false, journal: "sqlite3://x.db", recordings_directory: in}
+  data_acquisition: {enabled: false, journal: "sqlite3://x.db", recordings_directory: in, deadline_s: 7.5}
 topics: {advisory: {keep_all: false, transient_local: false, lifespan_s: 3}}
 sites:
   - site: s
@@ -296,6 +299,8 @@ assets: [mine/a.yaml]
   EXPECT_EQ(configuration->logging.directory, "/var/s/logs");
   EXPECT_EQ(configuration->logging.rotate_at_MB, 0.5);
   EXPECT_EQ(configuration->logging.rotated_files, 3);
+  EXPECT_EQ(configuration->services.at("data_acquisition").deadline_s, 7.5);
+  EXPECT_EQ(configuration->services.at("state_detection").deadline_s, 120.0);
   EXPECT_FALSE(configuration->services.at("data_acquisition").enabled);
   EXPECT_EQ(configuration->services.at("data_acquisition").journal, "sqlite3://x.db");
   EXPECT_EQ(configuration->services.at("data_acquisition").recordings_directory, "/var/s/in");

@@ -127,6 +127,7 @@ TEST(InProcessPipelineTest, SetsAsideWhatFailsTwiceAndGoesOn) {
   std::vector<std::string> set_aside;
   AssetLanes::Options impatient;
   impatient.workers.deadline = std::chrono::milliseconds(100);
+  impatient.workers.by_clock = std::chrono::milliseconds(500);
   impatient.workers.grace = std::chrono::milliseconds(100);
   FailingLayer::released = false;
   InProcessPipeline pipeline(

@@ -89,6 +89,7 @@ RunnerOptions impatient(const std::string& try_record = {}) {
   RunnerOptions options = fast_options();
   options.batch_time = milliseconds(20);
   options.lanes.workers.deadline = milliseconds(100);
+  options.lanes.workers.by_clock = milliseconds(500);
   options.lanes.workers.grace = milliseconds(100);
   options.lanes.try_record = try_record;
   return options;

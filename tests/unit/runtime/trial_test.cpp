@@ -19,7 +19,7 @@ namespace {
 using std::chrono::milliseconds;
 
 std::string result_of(const std::function<void()>& work, milliseconds deadline = milliseconds(10'000)) {
-  const auto trial = Trial::begin(work, deadline);
+  const auto trial = Trial::begin(work, deadline, 5 * deadline);
   for (;;) {
     if (const auto result = trial->result()) return *result;
     std::this_thread::sleep_for(milliseconds(1));

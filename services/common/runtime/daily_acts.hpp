@@ -13,6 +13,7 @@ class DailyActs {
  public:
   using Time = std::chrono::steady_clock::time_point;
   static constexpr std::size_t kMostInFull = 64;
+  static constexpr std::chrono::hours kDay{24};
 
   /// Notes one more; whether it stands in full.
   bool admits(Time now) {
@@ -26,7 +27,7 @@ class DailyActs {
   [[nodiscard]] bool is_to_be_told() const { return std::has_single_bit(left_out()); }
 
  private:
-  [[nodiscard]] bool is_another_day(Time now) const { return count_ == 0 || now - since_ >= std::chrono::hours{24}; }
+  [[nodiscard]] bool is_another_day(Time now) const { return count_ == 0 || now - since_ >= kDay; }
 
   Time since_{};
   std::size_t count_ = 0;

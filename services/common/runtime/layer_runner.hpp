@@ -278,6 +278,10 @@ class LayerRunner {
   [[nodiscard]] std::optional<std::string> refusal_of_many(const Message& message) const;
   /// Of an act that is taken as it was said here.
   void count_act(const Message& act);
+  /// From the audit trail: a restart begins no new day. Those of an asset count once its advice is recalled, which tells
+  /// acknowledgements apart.
+  void restore_counts(const std::vector<AuditEntry>& acts);
+  void count_past_acts(const std::string& asset_id);
   void tell_of_many(const Message& act, const std::string& refused);
   [[nodiscard]] bool has_waited_too_long(UtcTime since) const;
   /// A neighbour has taken an act that is ahead here: it waits for what it means, however long that takes.
@@ -341,7 +345,8 @@ class LayerRunner {
     std::string id;
   };
   /// Retractions and withdrawals that counted before this start, in order, by asset.
-  [[nodiscard]] Result<std::map<std::string, std::vector<PastAct>>> past_retractions();
+  [[nodiscard]] static std::map<std::string, std::vector<PastAct>> past_retractions(
+      const std::vector<AuditEntry>& acts);
 
   // What is kept for how long (layer_runner_retention.cpp).
   [[nodiscard]] Status drop_old_samples();
@@ -395,10 +400,11 @@ class LayerRunner {
   std::map<std::string, Said> said_ahead_;  ///< of those, by id, the ones that no neighbour has taken
   std::vector<std::string> given_up_;       ///< ids of acts that have waited for too long, of this batch
   DailyActs refused_acts_;
-  std::map<std::string, DailyActs> taken_acts_;  ///< by sort: asset and kind
-  std::vector<OperatorAct> acts_;                ///< of the running batch
-  std::vector<Message> records_;                 ///< of the running batch: own act_records
-  bool waits_for_acts_ = false;                  ///< the journal is new, and acts come before all else
+  std::map<std::string, DailyActs> taken_acts_;                       ///< by sort: asset and kind
+  std::map<std::string, std::vector<OperatorAct>> acts_of_last_day_;  ///< of forgotten assets
+  std::vector<OperatorAct> acts_;                                     ///< of the running batch
+  std::vector<Message> records_;                                      ///< of the running batch: own act_records
+  bool waits_for_acts_ = false;  ///< the journal is new, and acts come before all else
   std::deque<std::pair<Message, std::chrono::steady_clock::time_point>> told_records_;  ///< not yet in line, since when
   std::vector<Message> said_meanwhile_;            ///< by people, to this service itself
   std::map<std::string, std::string> standing_;    ///< advisory_id of the advice that stands, by asset

@@ -13,8 +13,6 @@ namespace sealwatch {
 namespace {
 
 constexpr const char* kAwaitsConfirmation = "awaits_confirmation";
-constexpr const char* kAhead = "waits until what it means is known here";
-constexpr const char* kFetchedBack = ", fetched back from ";
 constexpr std::ptrdiff_t kMostAwaiting = 8;  ///< of an asset
 /// Of an asset: who sends more floods. Those that a neighbour took are not counted: they come to mean something here.
 constexpr std::ptrdiff_t kMostAhead = 8;
@@ -142,7 +140,7 @@ bool LayerRunner::keeps_refused(const Message& act, const std::string& refused) 
   if (!refused_acts_.is_to_be_told()) return false;
   const std::string count = std::to_string(refused_acts_.left_out());
   acts_.push_back({.at = clock_.now(),
-                   .kind = "refused_acts",
+                   .kind = kRefusedActs,
                    .asset_id = asset_of(act),
                    .who = {},
                    .subject = {},
@@ -190,9 +188,9 @@ InputState LayerRunner::note_act(const Message& message, const std::optional<std
   const bool is_fetched_early = record != nullptr && !waits_at_desk && !is_its_turn(message);
   const bool is_ahead = waits_at_desk || (!refused && !waits && (admission_.is_ahead(message) || is_fetched_early));
   if (is_ahead && is_fetched_early) awaits_quiet_.insert(asset_of(message));
-  std::string outcome = refused ? *refused : waits ? "waits for a second person" : is_ahead ? kAhead : kTaken;
+  std::string outcome = refused ? *refused : waits ? kWaits : is_ahead ? kAhead : kTaken;
   if (record != nullptr)
-    outcome += (is_ahead && record->is_ahead ? ", as it did at " : kFetchedBack) + visible(record->header.producer);
+    outcome += (is_ahead && record->is_ahead ? kAsElsewhere : kFetchedBack) + visible(record->header.producer);
   if (auto act = act_of(message, clock_.now(), outcome)) acts_.push_back(std::move(*act));
   if (refused || act_confirmed_by(message)) return InputState::consumed;
   return waits ? InputState::awaiting : is_ahead ? InputState::ahead : state;
@@ -250,11 +248,10 @@ void LayerRunner::confirm(const Message& message) {
   if (!rejects(message)) give(act);
 }
 
-Result<std::map<std::string, std::vector<LayerRunner::PastAct>>> LayerRunner::past_retractions() {
-  const auto acts = journal_.acts();
-  if (!acts) return fail(acts.error());
+std::map<std::string, std::vector<LayerRunner::PastAct>> LayerRunner::past_retractions(
+    const std::vector<AuditEntry>& acts) {
   std::map<std::string, std::vector<PastAct>> past;
-  for (const AuditEntry& entry : *acts) {
+  for (const AuditEntry& entry : acts) {
     const OperatorAct& act = entry.act;
     if (!is_taken(act.outcome)) continue;
     const auto confirmed =

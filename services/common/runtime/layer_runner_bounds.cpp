@@ -8,6 +8,7 @@
 //                       What has waited too long is forgotten, and counts as another when it is said again
 //
 // What one service takes, all take, by its record (layer_runner_records.cpp), whatever the others have counted by then.
+#include <algorithm>
 #include <ranges>
 #include <utility>
 
@@ -26,6 +27,17 @@ constexpr std::chrono::minutes kTellsOfIt{1};
 
 std::chrono::nanoseconds steady_now() { return std::chrono::steady_clock::now().time_since_epoch(); }
 
+/// By the wall clock; what that one, set back, calls the future is now.
+std::chrono::nanoseconds age(const OperatorAct& act, UtcTime now) {
+  return std::chrono::nanoseconds(std::max<std::int64_t>(now.nanoseconds - act.at.nanoseconds, 0));
+}
+
+/// With which others an act counts. `is_of_other_advice`: an acknowledgement, of other advice than what stands.
+std::string sort_of(const OperatorAct& act, bool is_of_other_advice) {
+  return act.kind + " of " + (act.asset_id.empty() ? "no asset" : "asset " + act.asset_id) +
+         (is_of_other_advice ? ", of other advice than what stands" : "");
+}
+
 }  // namespace
 
 /// Retractions of nothing known are few for ever, or wait (admission.hpp).
@@ -34,12 +46,11 @@ std::optional<std::string> LayerRunner::counted_as(const Message& act) const {
   if (!told || !is_listened_to(act)) return std::nullopt;
   if (const auto retraction = retraction_of(told->asset_id, told->subject))
     if (admission_.means_nothing(told->asset_id, *retraction)) return std::nullopt;
-  const std::string sort = told->kind + " of " + (told->asset_id.empty() ? "no asset" : "asset " + told->asset_id);
   const auto* const seen = std::get_if<Acknowledgement>(&act);
-  if (seen == nullptr) return sort;
+  if (seen == nullptr) return sort_of(*told, false);
   const AlarmEntry* const alarm = desk_ ? desk_->entry_of(seen->asset_id, seen->advisory_id) : nullptr;
   if (alarm != nullptr && alarm->acknowledged_by.empty()) return std::nullopt;
-  return is_of_later_advice(act) ? sort + ", of other advice than what stands" : sort;
+  return sort_of(*told, is_of_later_advice(act));
 }
 
 std::optional<std::string> LayerRunner::refusal_of_many(const Message& message) const {
@@ -52,6 +63,35 @@ std::optional<std::string> LayerRunner::refusal_of_many(const Message& message) 
 
 void LayerRunner::count_act(const Message& act) {
   if (const auto sort = counted_as(act)) taken_acts_[*sort].admits(std::chrono::steady_clock::now());
+}
+
+/// Of an act that was taken, or waits, later entries tell what became of it.
+void LayerRunner::restore_counts(const std::vector<AuditEntry>& acts) {
+  std::set<std::pair<std::string, std::string>> known;  // asset, id
+  for (const AuditEntry& entry : acts) {
+    const OperatorAct& act = entry.act;
+    if (act.kind == kRefusedActs || !is_said_here(act.outcome)) continue;
+    const bool is_in = is_taken(act.outcome) || act.outcome == kWaits || act.outcome == kAhead;
+    const std::pair key(act.asset_id, act.subject);
+    const bool is_first = is_in ? known.insert(key).second : !known.contains(key);
+    if (!is_first || age(act, clock_.now()) >= DailyActs::kDay) continue;
+    if (is_in)
+      acts_of_last_day_[act.asset_id].push_back(act);
+    else
+      (void)refused_acts_.admits(std::chrono::steady_clock::now() - age(act, clock_.now()));
+  }
+}
+
+void LayerRunner::count_past_acts(const std::string& asset_id) {
+  const auto past = acts_of_last_day_.extract(asset_id);
+  if (!past) return;
+  const auto stands = standing_.find(asset_id);
+  const std::string of_standing = "acknowledgement/" + (stands == standing_.end() ? "" : stands->second) + "/";
+  for (const OperatorAct& act : past.mapped()) {
+    const bool is_seen = act.kind == name_of(Topic::acknowledgement);
+    const std::string sort = sort_of(act, is_seen && !act.subject.starts_with(of_standing));
+    (void)taken_acts_[sort].admits(std::chrono::steady_clock::now() - age(act, clock_.now()));
+  }
 }
 
 void LayerRunner::tell_of_many(const Message& act, const std::string& refused) {

@@ -20,9 +20,10 @@ constexpr std::chrono::milliseconds kInPassing{5};
 }  // namespace
 
 Status LayerRunner::restore_past() {
-  auto acts = past_retractions();
+  const auto acts = journal_.acts();
   if (!acts) return fail(acts.error());
-  past_acts_ = std::move(*acts);
+  past_acts_ = past_retractions(*acts);
+  restore_counts(*acts);
   const auto assets = journal_.assets();
   if (!assets) return fail(assets.error());
   for (const std::string& asset_id : *assets) {
@@ -32,6 +33,8 @@ Status LayerRunner::restore_past() {
     lanes_.know(asset_id);
   }
   for (const auto& [asset_id, acts_on_it] : past_acts_)
+    if (forgotten_.insert(asset_id).second) to_recall_.push_back(asset_id);
+  for (const auto& [asset_id, acts_on_it] : acts_of_last_day_)
     if (forgotten_.insert(asset_id).second) to_recall_.push_back(asset_id);
   if (Status opened = open_desk(); !opened) return opened;
   log_event(LogLevel::info, "started",
@@ -67,6 +70,7 @@ Status LayerRunner::recall(const std::string& asset_id) {
       [this](const Message& last_of_test) { return kind_->tells_all(last_of_test); });
   if (!outputs) return outputs;
   for (; act != acts.end(); ++act) admission_.note_act(asset_id, act->id);
+  count_past_acts(asset_id);
   if (desk_ && advice) desk_->stand(*advice, clock_.now());
   if (Status recalled = recall_inputs(asset_id); !recalled) return recalled;
   look_for_future_test(asset_id);

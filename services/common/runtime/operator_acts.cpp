@@ -39,4 +39,8 @@ std::optional<OperatorAct> act_of(const Message& message, UtcTime received, std:
 
 bool is_taken(std::string_view outcome) { return outcome == kTaken || outcome.starts_with(std::string(kTaken) + ", "); }
 
+bool is_said_here(std::string_view outcome) {
+  return outcome.find(kFetchedBack) == std::string_view::npos && outcome.find(kAsElsewhere) == std::string_view::npos;
+}
+
 }  // namespace sealwatch

@@ -19,4 +19,14 @@ namespace sealwatch {
 inline constexpr const char* kTaken = "taken";
 [[nodiscard]] bool is_taken(std::string_view outcome);
 
+/// Outcomes of acts that may come to count, and what follows where a neighbour's record of one was taken.
+inline constexpr const char* kWaits = "waits for a second person";
+inline constexpr const char* kAhead = "waits until what it means is known here";
+inline constexpr const char* kFetchedBack = ", fetched back from ";
+inline constexpr const char* kAsElsewhere = ", as it did at ";
+[[nodiscard]] bool is_said_here(std::string_view outcome);
+
+/// The kind of an entry that tells how many refused acts have none of their own.
+inline constexpr const char* kRefusedActs = "refused_acts";
+
 }  // namespace sealwatch

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "sealwatch/message/confirmation.hpp"
@@ -576,6 +577,40 @@ TEST_F(ActsTest, InventedOnesDoNotFillTheRecordAndAreAnAlarm) {
   elsewhere.header.message_id = "maintenance_event/B/" + format_utc({1'899'000'000'000'000'000});
   say(*process, elsewhere);
   EXPECT_EQ(acts().back().act.outcome, "taken") << "of another asset";
+}
+
+/// Each start would let another 64 of a kind, and of refused ones, into a record that is kept for ever.
+TEST_F(ActsTest, ARestartBeginsNoNewDay) {
+  const auto invented = [](int k) {
+    Acknowledgement of_old_advice = seen("Dr. Nobody");
+    of_old_advice.header.message_id = "acknowledgement/x/" + std::to_string(k);
+    Acknowledgement nameless = seen("");
+    nameless.header.message_id = "acknowledgement/y/" + std::to_string(k);
+    return std::vector<Message>{of_old_advice, replaced("Dr. Nobody", UtcTime{1'899'000'000'000'000'000 + k}),
+                                nameless};
+  };
+  const auto flood = [&](Process& process, int first) {
+    for (int k = first; k < first + 100; ++k) {
+      for (const Message& act : invented(k)) EXPECT_TRUE(operator_.publish(act));
+      process.step();
+    }
+    std::map<std::string, int> full;
+    for (const AuditEntry& entry : acts())
+      ++full[entry.act.kind == "refused_acts" ? "left out" : entry.act.outcome == "taken" ? entry.act.kind : "refused"];
+    return full;
+  };
+  const std::map<std::string, int> a_day = {{"acknowledgement", 64}, {"seal_replaced", 64}, {"refused", 64}};
+  for (int life = 0; life < 3; ++life) {
+    auto full = flood(*start(), 100 * life);
+    EXPECT_LE(full["left out"], 10 * (life + 1));
+    full.erase("left out");
+    EXPECT_EQ(full, a_day) << "life " << life;
+  }
+  Process next_day(
+      network_, [] { return std::make_unique<ListeningLayer>(); }, place_.connection());
+  next_day.clock().set(add_seconds(next_day.clock().now(), 86'400.0));
+  next_day.start();
+  EXPECT_EQ(flood(next_day, 300)["seal_replaced"], 2 * 64);
 }
 
 TEST_F(ActsTest, OnUnknownAssetsAreRecordedAsRefusedAndDoNotFillTheRecord) {

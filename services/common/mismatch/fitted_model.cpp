@@ -125,6 +125,16 @@ void leave_out(const std::vector<Eigen::Index>& samples, PemRecording& recording
   for (const Eigen::Index sample : samples) recording.weight.segment(sample * channels, channels).setZero();
 }
 
+// Of simulations that miss by the root of `excess` times the noise. Errors of a free run add up; one that is held forgets
+// them, and follows the recording's noise.
+double tolerance_at(double excess, double held_within_s) {
+  constexpr double kFarOff = 100.0;  // times the noise: nearer, it decides what is told apart
+  constexpr double kHeld = 10.0, kCoarsest = 1e-4;
+  const double free_run = SimulationOptions{}.relative_tolerance,
+               finest = held_within_s > 0.0 ? kHeld * free_run : free_run;
+  return std::clamp(free_run * std::sqrt(excess) / kFarOff, finest, kCoarsest);
+}
+
 // `from`: where the search sets out; null: not known.
 Result<PemProblem> problem_of(const AssetConfig& asset, const Data& data, const ActuatorFitOptions& options,
                               const FittedModel* from) {
@@ -140,8 +150,9 @@ Result<PemProblem> problem_of(const AssetConfig& asset, const Data& data, const 
       std::erase_if(recording.own, [](const Unknown& unknown) { return unknown.name.starts_with("initial:"); });
   }
   problem->simulation_options = simulation_options(data.samples, options);
-  problem->simulation_options.relative_tolerance =
-      from != nullptr && from->residuals > 0.0 ? tolerance_for(*from) : data.relative_tolerance;
+  problem->simulation_options.relative_tolerance = from != nullptr && from->residuals > 0.0
+                                                       ? tolerance_at(excess(*from), data.held_within_s)
+                                                       : data.relative_tolerance;
   problem->simulation_options.deadline = data.deadline;
   problem->simulation_options.held_within_s = data.held_within_s;
   return problem;
@@ -198,10 +209,7 @@ bool is_exact_enough(const FittedModel& model) {
 }
 
 double tolerance_for(const FittedModel& model) {
-  constexpr double kFarOff = 100.0;  // times the noise: nearer, it decides what is told apart
-  constexpr double kCoarsest = 1e-4;
-  const double finest = SimulationOptions{}.relative_tolerance;
-  return std::clamp(finest * std::sqrt(excess(model)) / kFarOff, finest, kCoarsest);
+  return tolerance_at(excess(model), model.problem.simulation_options.held_within_s);
 }
 
 bool at_bound(const Unknown& unknown, double at) {

@@ -2,7 +2,7 @@
 // wrong parameters stands still or runs away, it stays near the recorded course, so that what its equations lack shows
 // where and when it is lacking, and nearly in proportion.
 //
-//   dy_i/dt = f_i + g_1 (r_i(t) - y_i)     y_i a state that is measured, r_i its record, linear between samples
+//   dy_i/dt = f_i + g_1 (r_i(t) - y_i)     y_i a state that is measured, r_i its record, smoothed over tau / 5 at most
 //   dy_j/dt = f_j + g_2 (r_i(t) - y_i)     y_j the rate of y_i (f_i = c y_j, as speed to position) that is not measured
 //   g_1 = 1 / tau, g_2 = 0; with a rate g_1 = 2 / tau, g_2 = 1 / (c tau^2): critically damped, both within tau
 //
@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "sealwatch/ode/bdf.hpp"
+#include "services/common/model/recorded_course.hpp"
 
 namespace sealwatch {
 
@@ -25,14 +26,17 @@ class MeasuredStates {
  public:
   struct State {
     int state = 0;
-    std::vector<double> recorded;  ///< at the samples
-    int rate = -1;                 ///< the state that is its rate and not measured; -1: none
-    double slope = 1.0;            ///< f_i / y_j: of a gear, or of another unit
+    RecordedCourse recorded;
+    int rate = -1;       ///< the state that is its rate and not measured; -1: none
+    double slope = 1.0;  ///< f_i / y_j: of a gear, or of another unit
   };
 
-  /// `time_constant_s`: tau.
-  MeasuredStates(std::vector<double> times, std::vector<State> states, double time_constant_s)
-      : times_(std::move(times)), states_(std::move(states)), tau_s_(time_constant_s) {}
+  /// Beside what the equations lack within tau, the noise of single samples says nothing, and costs steps.
+  static constexpr double kSmoothed = 0.2;  // of tau
+
+  /// `begin_s`: of the recording; `time_constant_s`: tau.
+  MeasuredStates(double begin_s, std::vector<State> states, double time_constant_s)
+      : begin_s_(begin_s), states_(std::move(states)), tau_s_(time_constant_s) {}
 
   /// Asks the equations which states are the rates of measured ones: of these alone, in proportion, both at a state and
   /// where every state is larger by its `size`. (Of a gear whose ratio is free, sensitivities lack what that does to g_2.)
@@ -41,10 +45,8 @@ class MeasuredStates {
 
   /// f += g (r - y)
   void add_to(double t, const double* y, double* f) const {
-    locate(t);
     for (const State& one : states_) {
-      const double r = one.recorded[sample_] + share_ * (one.recorded[sample_ + 1] - one.recorded[sample_]),
-                   difference = r - y[one.state];
+      const double difference = one.recorded.at(t) - y[one.state];
       f[one.state] += gain(one) * difference;
       if (one.rate >= 0) f[one.rate] += gain_of_rate(one) * difference;
     }
@@ -60,17 +62,10 @@ class MeasuredStates {
  private:
   [[nodiscard]] double gain(const State& one) const { return (one.rate >= 0 ? 2.0 : 1.0) / tau_s_; }
   [[nodiscard]] double gain_of_rate(const State& one) const { return 1.0 / (tau_s_ * tau_s_ * one.slope); }
-  void locate(double t) const {
-    while (sample_ + 2 < times_.size() && times_[sample_ + 1] <= t) ++sample_;
-    while (sample_ > 0 && times_[sample_] > t) --sample_;
-    share_ = (t - times_[sample_]) / (times_[sample_ + 1] - times_[sample_]);
-  }
 
-  std::vector<double> times_;
+  double begin_s_;
   std::vector<State> states_;
   double tau_s_;
-  mutable std::size_t sample_ = 0;
-  mutable double share_ = 0.0;
 };
 
 template <int N>
@@ -95,9 +90,9 @@ void MeasuredStates::find_rates(const OdeSystem<N>& system, const std::vector<do
   const auto is_measured = [&](int state) { return std::ranges::find(states_, state, &State::state) != states_.end(); };
   std::vector<double> larger = at;
   for (std::size_t k = 0; k < larger.size(); ++k) larger[k] += size[k];
-  system.linearise(times_.front(), at.data(), f.data(), jacobian);
+  system.linearise(begin_s_, at.data(), f.data(), jacobian);
   for (State& one : states_) one.rate = only_rate(one, at);
-  system.linearise(times_.front(), larger.data(), f.data(), jacobian);
+  system.linearise(begin_s_, larger.data(), f.data(), jacobian);
   for (State& one : states_) {
     const double slope = one.slope;
     const bool same =

@@ -37,10 +37,12 @@ RecordedSystem& held(const RecordedSimulation& simulation, const RecordedInput& 
     const Eigen::ArrayXd recorded =
         (simulation.recorded().col(static_cast<Eigen::Index>(k)).array() - start.sensor_offset[k]) /
         (1.0 + start.sensor_gain[k]);
-    if (state >= 0) states.push_back({.state = state, .recorded = {recorded.begin(), recorded.end()}});
+    const double smoothed_s = MeasuredStates::kSmoothed * options.held_within_s;
+    if (state >= 0)
+      states.push_back({.state = state, .recorded = {input.times(), {recorded.begin(), recorded.end()}, smoothed_s}});
   }
   if (states.empty()) return system;
-  system.hold_to({input.times(), std::move(states), options.held_within_s}, start.initial_state);
+  system.hold_to({input.times().front(), std::move(states), options.held_within_s}, start.initial_state);
   return system;
 }
 

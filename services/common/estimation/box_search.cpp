@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "services/common/estimation/minimum_in_box.hpp"
 
@@ -16,8 +17,8 @@ constexpr double kDamping = 1e-4, kUndamped = 1e-8, kFalls = 1.0 / 3.0;
 // Unknowns are of the order of one: no step goes further in any of them, until steps prove that the linear model holds.
 // Damping alone leaves a step long in what the recordings hardly show.
 constexpr double kOrderOfOne = 3.0, kShrinks = 0.25, kWidens = 3.0, kNearest = 1e-7;
-constexpr double kKept = 1e-3;  // of what the linear model promises: a step that keeps less is taken back
 constexpr double kLinear = 0.25, kTrusted = 0.75;
+constexpr double kBent = 0.75;  // the second term of a curved step, of its first
 // Residuals that do not vanish add r d2r/dx2 to the curvature of their squares. What the last step saw of it scales the
 // linear model's (sizing: M. Al-Baali, R. Fletcher, J. Oper. Res. Soc. 36 (1985) 405), at most by this: beyond, steps are
 // too long for any quadratic model.
@@ -80,22 +81,31 @@ double BoxSearch::evaluate(bool may_keep) {
   return sum;
 }
 
+std::vector<Eigen::Index> BoxSearch::places_of(std::size_t recording) const {
+  std::vector<Eigen::Index> place(point_.shared.size() + point_.own[recording].size());
+  const auto own = place.begin() + static_cast<std::ptrdiff_t>(point_.shared.size());
+  std::iota(place.begin(), own, Eigen::Index{0});
+  Eigen::Index first_own = static_cast<Eigen::Index>(point_.shared.size());
+  for (std::size_t k = 0; k < recording; ++k) first_own += static_cast<Eigen::Index>(point_.own[k].size());
+  std::iota(own, place.end(), first_own);
+  return place;
+}
+
 BoxSearch::LinearModel BoxSearch::linear_model() const {
   LinearModel here{.gram = Eigen::MatrixXd::Zero(size_, size_),
                    .gradient = Eigen::VectorXd::Zero(size_),
                    .low = Eigen::VectorXd::Constant(size_, -kInfinite),
                    .high = Eigen::VectorXd::Constant(size_, kInfinite)};
   const auto shared = static_cast<Eigen::Index>(point_.shared.size());
-  Eigen::Index first_own = shared;
-  for (const RecordingCost* cost : costs_.costs()) {
-    const Eigen::MatrixXd& all = cost->compressed();
+  for (std::size_t k = 0; k < costs_.costs().size(); ++k) {
+    const RecordingCost& cost = *costs_.costs()[k];
+    const Eigen::MatrixXd& all = cost.compressed();
     const Eigen::Index n = all.cols() - 1;
-    std::vector<Eigen::Index> place(static_cast<std::size_t>(n));
-    for (Eigen::Index k = 0; k < n; ++k) place[static_cast<std::size_t>(k)] = k < shared ? k : first_own + k - shared;
+    const std::vector<Eigen::Index> place = places_of(k);
     here.gram(place, place) += all.leftCols(n).transpose() * all.leftCols(n);
     here.gradient(place) += all.leftCols(n).transpose() * all.col(n);
-    first_own += n - shared;
-    here.has_kept = here.has_kept || cost->has_kept();
+    here.has_kept = here.has_kept || cost.has_kept();
+    cost.set_out_from_here();
   }
   for (Eigen::Index k = 0; k < shared; ++k) {
     const Unknown& unknown = problem_.shared[static_cast<std::size_t>(k)];
@@ -113,6 +123,40 @@ BoxSearch::LinearModel BoxSearch::linear_model() const {
     here.high(k) = unknown.to_unknown(unknown.max) - at;
   }
   return here;
+}
+
+// Along a curved valley residuals are r + s J v + s^2 (a + J w): a the bend that the step v has shown, w what the linear
+// model has against it. The cost is a polynomial of s, and least where its second term still is below the first.
+// Geodesic acceleration (M. K. Transtrum, J. P. Sethna, arXiv:1201.5885), with the bend of a step that was too long.
+BoxSearch::Step BoxSearch::bent(const LinearModel& here, const Eigen::VectorXd& v) const {
+  Bend a{.slope = Eigen::VectorXd::Zero(size_)};
+  for (std::size_t k = 0; k < costs_.costs().size(); ++k) {
+    const std::vector<Eigen::Index> place = places_of(k);
+    const Bend one = costs_.costs()[k]->bend(v(place));
+    a.slope(place) += one.slope;
+    a.with_residual += one.with_residual;
+    a.square += one.square;
+  }
+  const Eigen::MatrixXd gram = here.gram / here.curvature;
+  const Eigen::VectorXd w = minimum_in_box(gram, a.slope, here.low - v, here.high - v, kUndamped),
+                        size = gram.diagonal().cwiseSqrt();
+  const double first = v.dot(here.gradient), second = 0.5 * v.dot(gram * v) + a.with_residual + w.dot(here.gradient),
+               third = v.dot(a.slope + gram * w), fourth = 0.5 * (a.square + w.dot(2.0 * a.slope + gram * w));
+  const double longest = std::min(1.0, kBent * size.cwiseProduct(v).norm() / size.cwiseProduct(w).norm());
+  constexpr int kPlaces = 100;  // closer where s is small
+  double least = 0.0, best = 0.0;
+  for (int k = 1; k <= kPlaces; ++k) {
+    const double s = longest * k * k / (kPlaces * kPlaces),
+                 change = s * (first + s * (second + s * (third + s * fourth)));
+    if (change < least) least = change, best = s;
+  }
+  return {.by = best * v + best * best * w, .promised = -least};
+}
+
+BoxSearch::Step BoxSearch::take(Step step, bool may_keep) {
+  move(step.by);
+  step.after = evaluate(may_keep);
+  return step;
 }
 
 void BoxSearch::move(const Eigen::VectorXd& by) {
@@ -200,14 +244,22 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
     }
     if (promises) by = limited;
     const PemPoint before = point_;
-    const double promised = here.promised(by), length = by.cwiseAbs().maxCoeff();
-    move(by);
-    const double after = evaluate(may_keep), change = cost_ - after, kept = change / promised;
-    if (std::isfinite(after)) curvature = here.curvature_seen(by, change);
-    if (!(kept >= kKept)) {
+    Step step = take({.by = by, .promised = here.promised(by)}, may_keep);
+    if (step.is_simulated()) curvature = here.curvature_seen(by, cost_ - step.after);
+    if (step.is_simulated() && !step.is_kept(cost_)) {
+      if (Step curved = bent(here, by); curved.promised > tolerance) {
+        point_ = before;
+        curved = take(std::move(curved), may_keep);
+        // One that the model along the curve does not foresee may lead to another, worse minimum.
+        if (cost_ - curved.after >= kLinear * curved.promised) step = std::move(curved);
+      }
+    }
+    const double change = cost_ - step.after, kept = change / step.promised;
+    if (!step.is_kept(cost_)) {
+      const double length = by.cwiseAbs().maxCoeff();
       point_ = before;
       here.curve(curvature);
-      beyond_is_none = beyond_is_none || !std::isfinite(after);
+      beyond_is_none = beyond_is_none || !step.is_simulated();
       if (renew()) continue;
       // Where a step of the order of one promises nothing (an unknown that sets out at many times its scale), it must be
       // longer: else the search would end where it set out.
@@ -217,13 +269,14 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
       shortened = true;
       continue;
     }
+    const double length = step.by.cwiseAbs().maxCoeff();
     damping = std::max(kUndamped, damping * std::max(kFalls, 1.0 - std::pow(2.0 * kept - 1.0, 3)));
     if (kept > kTrusted) radius = std::max(radius, kWidens * length);
     if (kept < kLinear) radius = std::min(radius, std::max(kOrderOfOne, kShrinks * length));
-    may_keep = kept > kTrusted && rule.is_near_noise(after);
+    may_keep = kept > kTrusted && rule.is_near_noise(step.after);
     shortened = beyond_is_none = false;
     ++taken;
-    cost_ = after;
+    cost_ = step.after;
     renew_model();
     if (change <= tolerance && kept > kLinear && !renew()) return SearchEnd::converged;
   }

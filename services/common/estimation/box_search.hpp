@@ -3,7 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "sealwatch/core/deadline.hpp"
@@ -56,9 +58,28 @@ class BoxSearch {
   struct LinearModel;
 
   SearchEnd descend(const StoppingRule& rule, int maximum_iterations);
+  /// By how much it promises to let the cost fall, and the cost there once it was taken.
+  struct Step {
+    Eigen::VectorXd by;
+    double promised = 0.0;
+    double after = std::numeric_limits<double>::infinity();
+    [[nodiscard]] bool is_simulated() const { return std::isfinite(after); }
+    /// A step that keeps less of its promise is taken back.
+    [[nodiscard]] bool is_kept(double before) const {
+      constexpr double kKept = 1e-3;
+      return before - after >= kKept * promised;
+    }
+  };
+  /// The point moves.
+  [[nodiscard]] Step take(Step step, bool may_keep);
+  /// In place of the step `v`, which was taken last and was too long.
+  [[nodiscard]] Step bent(const LinearModel& here, const Eigen::VectorXd& v) const;
   /// At the point; infinite where a recording cannot be simulated. `may_keep`: derivatives by what is known beforehand.
   [[nodiscard]] double evaluate(bool may_keep = true);
+  /// Of the point that was evaluated last, from where steps set out now.
   [[nodiscard]] LinearModel linear_model() const;
+  /// Places of a recording's unknowns among all.
+  [[nodiscard]] std::vector<Eigen::Index> places_of(std::size_t recording) const;
   void move(const Eigen::VectorXd& by);
   /// Unknowns outside their range are moved to its end and held there. True when there were any.
   bool hold_outside();

@@ -62,18 +62,29 @@ bool RecordingCost::update(const double* shared, const double* own, bool may_kee
   if (known_ && !has_kept() && may_keep) kept_ = kept_derivatives(problem_, linearisation_);
   std::copy_n(shared, shared_.size(), shared_.begin());
   std::copy_n(own, own_.size(), own_.begin());
+  const bool leaves = sets_out_;
+  if (leaves) from_ = std::move(linearisation_);
   const bool keep = may_keep && kept_.any();
   Result<Linearisation> result =
       linearise(problem_, recording_, shared_, own_, keep ? Derivatives::by_what_is_not_known : Derivatives::by_all);
   if (!result) {
+    if (leaves) linearisation_ = std::move(from_);
     known_ = known_ && same;  // with what was kept
     return false;
   }
   known_ = true;
+  sets_out_ = false;
   linearisation_ = std::move(*result);
   linearisation_.has_kept = keep;
   compressed_ = keep ? compress(problem_, linearisation_, kept_) : compress(linearisation_);
   return true;
+}
+
+Bend RecordingCost::bend(const Eigen::VectorXd& step) const {
+  const Eigen::VectorXd a = linearisation_.residual - from_.residual - jacobian_times(problem_, from_, kept_, step);
+  return {.slope = jacobian_transposed_times(problem_, from_, kept_, a),
+          .with_residual = from_.residual.dot(a),
+          .square = a.squaredNorm()};
 }
 
 PriorCost::PriorCost(const std::vector<Unknown>& unknowns) : unknowns_(unknowns) {

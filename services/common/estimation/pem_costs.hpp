@@ -11,6 +11,13 @@
 
 namespace sealwatch {
 
+/// What residuals after a step have beside the linear model where it set out: a = r(x + v) - r(x) - J v.
+struct Bend {
+  Eigen::VectorXd slope;       ///< J'a
+  double with_residual = 0.0;  ///< r'a
+  double square = 0.0;         ///< a'a
+};
+
 /// One recording as one residual block of as many rows as it has unknowns, plus one (compress() in pem_problem.hpp):
 /// the same cost, gradient and Gauss-Newton matrix as with all samples.
 class RecordingCost final : public ceres::CostFunction {
@@ -37,6 +44,11 @@ class RecordingCost final : public ceres::CostFunction {
   /// one. False where nothing can be simulated.
   bool update(const double* shared, const double* own, bool may_keep = false) const;
 
+  /// Steps set out from the point that was evaluated last: what is there is kept until the next such point.
+  void set_out_from_here() const { sets_out_ = true; }
+  /// Of the step from there to the point that was evaluated last.
+  [[nodiscard]] Bend bend(const Eigen::VectorXd& step) const;
+
   /// Whether some derivatives are those of an earlier point.
   [[nodiscard]] bool has_kept() const { return linearisation_.has_kept; }
 
@@ -48,7 +60,9 @@ class RecordingCost final : public ceres::CostFunction {
   mutable Linearisation linearisation_;  ///< by what is not known, where the rest is kept
   mutable Eigen::MatrixXd compressed_;
   mutable KeptDerivatives kept_;
-  mutable bool known_ = false;  ///< at that point
+  mutable Linearisation from_;     ///< where steps set out
+  mutable bool sets_out_ = false;  ///< that is the point that was evaluated last
+  mutable bool known_ = false;     ///< at that point
 };
 
 /// What is known of the shared unknowns beforehand, one residual each.

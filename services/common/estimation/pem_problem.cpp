@@ -394,6 +394,23 @@ RowMatrix whole_jacobian(const PemProblem& problem, const RowMatrix& not_known, 
   return whole;
 }
 
+Eigen::VectorXd jacobian_times(const PemProblem& problem, const Linearisation& at, const KeptDerivatives& kept,
+                               const Eigen::VectorXd& v) {
+  if (!at.has_kept) return at.jacobian * v;
+  const Places of = places(problem, v.size());
+  return at.jacobian * v(of.others) + kept.jacobian * v(of.known);
+}
+
+Eigen::VectorXd jacobian_transposed_times(const PemProblem& problem, const Linearisation& at,
+                                          const KeptDerivatives& kept, const Eigen::VectorXd& y) {
+  if (!at.has_kept) return at.jacobian.transpose() * y;
+  const Places of = places(problem, at.jacobian.cols() + kept.jacobian.cols());
+  Eigen::VectorXd product(at.jacobian.cols() + kept.jacobian.cols());
+  product(of.others) = at.jacobian.transpose() * y;
+  product(of.known) = kept.jacobian.transpose() * y;
+  return product;
+}
+
 Eigen::MatrixXd compress(const Linearisation& linearisation) {
   const RowMatrix& jacobian = linearisation.jacobian;
   const Eigen::Index n = jacobian.cols();

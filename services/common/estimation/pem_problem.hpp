@@ -129,6 +129,12 @@ struct KeptDerivatives {
 [[nodiscard]] RowMatrix whole_jacobian(const PemProblem& problem, const RowMatrix& not_known,
                                        const KeptDerivatives& kept);
 
+/// J v and J'y, with `kept` where `at` has kept derivatives.
+[[nodiscard]] Eigen::VectorXd jacobian_times(const PemProblem& problem, const Linearisation& at,
+                                             const KeptDerivatives& kept, const Eigen::VectorXd& v);
+[[nodiscard]] Eigen::VectorXd jacobian_transposed_times(const PemProblem& problem, const Linearisation& at,
+                                                        const KeptDerivatives& kept, const Eigen::VectorXd& y);
+
 /// Upper part U of [J r] with U'U = [J r]'[J r]: the same least-squares problem in as many rows as it has unknowns plus
 /// one.
 [[nodiscard]] Eigen::MatrixXd compress(const Linearisation& linearisation);

@@ -1,0 +1,61 @@
+// Parameters that must change together along a curve: b = a^2 is known far better than a. Straight steps
+// leave the valley; the search follows its bend.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <random>
+
+#include "services/common/estimation/pem_search.hpp"
+#include "services/common/runtime/plant_file.hpp"
+#include "tests/unit/model/recording_for_tests.hpp"
+
+namespace sealwatch {
+namespace {
+
+constexpr double kA = 2.5, kRough = 0.1, kFine = 0.01;
+
+constexpr const char* kPlant = R"yaml(name: valley
+meaning: two outputs, one of which shows a and the other whether b is its square
+inputs: {u: {unit: V}}
+outputs:
+  rough: {value: a*u, unit: V, noise_std: 0.1}
+  fine: {value: (b - a*a)*u, unit: V, noise_std: 0.01}
+parameters:
+  a: {value: -3, min: -10, max: 10, unit: 1, estimate: true}
+  b: {value: 9, min: -100, max: 100, unit: 1, estimate: true}
+)yaml";
+
+TimeSeries recording() {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise;
+  TimeSeries samples{.time_s = {}, .channels = {{"u", "V", 0.0, {}}, {"rough", "V", 0.0, {}}, {"fine", "V", 0.0, {}}}};
+  for (int row = 0; row < 200; ++row) {
+    samples.time_s.push_back(0.1 * row);
+    samples.channels[0].values.push_back(1.0);
+    samples.channels[1].values.push_back(kA + kRough * noise(random));
+    samples.channels[2].values.push_back(kFine * noise(random));
+  }
+  return samples;
+}
+
+TEST(CurvedValley, IsFollowedAlongItsBend) {
+  const std::string file = ::testing::TempDir() + "valley.yaml";
+  std::ofstream(file) << kPlant;
+  const auto plant = load_plant(file);
+  ASSERT_TRUE(plant) << plant.error().front().describe();
+  const TimeSeries samples = recording();
+  auto problem = make_pem_problem(nominal_asset("valley"), {&samples, 1});
+  ASSERT_TRUE(problem) << problem.error().describe();
+  const ActuatorFitOptions options;
+  problem->simulation_options = simulation_options({&samples, 1}, options);
+  const auto optimum = search(*problem, start_point(*problem, 1.0), options);
+  ASSERT_TRUE(optimum) << optimum.error().describe();
+  EXPECT_TRUE(optimum->converged) << optimum->termination;
+  EXPECT_LT(optimum->iterations, 25);
+  EXPECT_LT(optimum->cost, 0.5 * 1.3 * 400.0);  // the noise of both outputs
+  EXPECT_NEAR(problem->shared[0].to_value(optimum->point.shared[0]), kA, 4.0 * kRough / std::sqrt(200.0));
+}
+
+}  // namespace
+}  // namespace sealwatch

@@ -169,6 +169,13 @@ Plot side_by_side(const ForecastPanel::Answer& answer) {
   return plot;
 }
 
+/// Dates and percentages stay on one line.
+std::string in_lines(const std::string& text) {
+  std::string html = report::unbroken(report::escaped(text));
+  for (std::size_t at = 0; (at = html.find(" %", at)) != std::string::npos;) html.replace(at, 1, "\u00a0");
+  return html;
+}
+
 /// What stands behind the methods' names.
 std::string methods_note(const ForecastPanel::Answer& answer) {
   std::string list;
@@ -179,14 +186,15 @@ std::string methods_note(const ForecastPanel::Answer& answer) {
            {"state_space", "state space: the law of ageing, followed through all tests"},
            {"fleet", "fleet: the same, assuming that it belongs to a known population"},
            {"ols",
-            "ols: a straight line through the tests of the last so many months, whose own interval is too narrow "
-            "for what ages"},
-           {"ols_drift", "ols drift: the same line, whose slope may change"},
+            "ols: a straight line through the tests of the last so many months; ageing is curved, so its interval is "
+            "too narrow"},
+           {"ols_drift", "ols drift: the same line, with a slope that may change"},
            {"ols_log_time", "ols log time: a straight line over the logarithm of time"},
-           {"average", "average: of methods, weighted by how well they forecast this part before"}})
+           {"average", "average: the mean of several methods, weighted by their past accuracy for this part"}})
     if (any(method)) list.append("<li>").append(meaning);
   return report::paragraph(
-             "Months count from the last test. The primary forecaster is in bold; the others stand beside it.",
+             "Months count from the last test. The advice rests on the forecaster in bold; the others are for "
+             "comparison.",
              "small muted") +
          "<ul class=\"small muted\">" + list + "</ul>";
 }
@@ -214,23 +222,31 @@ std::string remaining_life_table(const ForecastPanel::Answer& answer) {
 void list_samples(const std::vector<ConditionSample>& samples, const std::string& why, std::string& list) {
   for (const ConditionSample& sample : samples)
     list.append("<li>").append(
-        report::escaped(format_date(sample.time) + ", condition " + text::as_condition(sample.condition) + ": " + why));
+        in_lines(format_date(sample.time) + ", condition " + text::as_condition(sample.condition) + ": " + why));
+}
+
+/// Whether the services' advice gives this among its reasons.
+bool says(const std::optional<Advisory>& advice, const std::string& explanation) {
+  return advice && std::ranges::any_of(advice->reasons, [&](const std::string& reason) {
+           return reason.find(explanation) != std::string::npos;
+         });
 }
 
 std::string reasons_part(const ForecastQuestion& question, const ForecastPanel::Answer& answer) {
   std::string list = "<ul>";
   if (question.advice)
-    for (const std::string& reason : question.advice->reasons) list.append("<li>").append(report::escaped(reason));
-  list += "<li>" + report::escaped(method_label(answer.forecasts.front()) +
-                                   " is the primary forecaster: " + answer.forecasts.front().explanation);
-  if (answer.windows_disagree) list.append("<li>Windows disagree: ").append(report::escaped(answer.disagreement));
+    for (const std::string& reason : question.advice->reasons) list.append("<li>").append(in_lines(reason));
+  const Forecast& primary = answer.forecasts.front();
+  if (!says(question.advice, primary.explanation))
+    list += "<li>" + in_lines(method_label(primary) + " is the primary forecaster: " + primary.explanation);
+  if (answer.windows_disagree) list.append("<li>Windows disagree: ").append(in_lines(answer.disagreement));
   if (question.without_error > 0)
     list.append("<li>Standard errors are not known of " + std::to_string(question.without_error) + " of " +
                 std::to_string(question.request.history.size()) + " tests; the scatter of the tests replaces them.");
   list_samples(question.vague, "left out as too vague", list);
   list_samples(answer.left_out, "left out as an isolated outlier", list);
   for (const TestNotCounted& test : question.not_counted)
-    list.append("<li>").append(report::escaped(format_date(test.time) + ", left out by the services: " + test.why));
+    list.append("<li>").append(in_lines(format_date(test.time) + ", left out by the services: " + test.why));
   return report::folded_section("Reasons", "what the advice and the forecast rest on, what was left out",
                                 list + "</ul>", report::Paper::printed);
 }
@@ -253,13 +269,6 @@ const char* colour_of(const std::optional<Advisory>& advice, ForecastState state
   return advice->priority >= AdvisoryPriority::low ? "warn" : "good";
 }
 
-/// Dates and percentages stay on one line.
-std::string in_lines(const std::string& text) {
-  std::string html = report::unbroken(report::escaped(text));
-  for (std::size_t at = 0; (at = html.find(" %", at)) != std::string::npos;) html.replace(at, 1, "\u00a0");
-  return html;
-}
-
 /// What to do, and why.
 struct Headline {
   std::string action, why;
@@ -279,7 +288,7 @@ Headline headline_of(const Advisory& advice) {
 
 void add_figure(const std::string& value, const std::string& meaning, std::string& html) {
   html.append("<div><b>").append(report::unbroken(report::escaped(value)));
-  html.append("</b><span>").append(report::escaped(meaning)).append("</span></div>\n");
+  html.append("</b><span>").append(report::unbroken(report::escaped(meaning))).append("</span></div>\n");
 }
 
 /// By when something has to be done, the condition now, what is left and when it ends.
@@ -337,7 +346,7 @@ std::string head(const ForecastQuestion& question, const ForecastPanel::Answer& 
   const Headline headline =
       question.advice ? headline_of(*question.advice) : headline_without_advice(question, primary);
   std::string html = "<h1>" + report::escaped(heading_of(question.part)) + report::escaped(of) + "</h1>";
-  html.append(report::paragraph(history_words(question), "muted small"));
+  html.append("<p class=\"muted small\">").append(in_lines(history_words(question))).append("</p>");
   html.append("<div class=\"banner ").append(colour_of(question.advice, primary.state));
   html.append("\"><p class=\"verdict\">").append(in_lines(headline.action));
   html.append("</p><p>").append(in_lines(headline.why)).append("</p></div>");

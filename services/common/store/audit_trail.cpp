@@ -104,9 +104,9 @@ void make_acts_table(soci::session& sql) {
              " subject TEXT NOT NULL, remark TEXT NOT NULL, outcome TEXT NOT NULL, previous VARCHAR(64) NOT NULL,"
              " hash VARCHAR(64) NOT NULL)";
   if (!is_file(sql)) return;
-  for (const std::string change : {"UPDATE", "DELETE"})
-    sql << "CREATE TRIGGER IF NOT EXISTS acts_no_" + change + " BEFORE " + change +
-               " ON acts BEGIN SELECT RAISE(ABORT, 'acts are only added'); END";
+  for (const char* change : {"UPDATE", "DELETE"})
+    sql << "CREATE TRIGGER IF NOT EXISTS acts_no_" << change << " BEFORE " << change
+        << " ON acts BEGIN SELECT RAISE(ABORT, 'acts are only added'); END";
 }
 
 AuditEntry append_act(soci::session& sql, const std::string& service, const OperatorAct& act) {

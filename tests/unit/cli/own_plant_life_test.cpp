@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <random>
+#include <regex>
 
 #include "sealwatch/config/configuration.hpp"
 #include "sealwatch/model/simulation.hpp"
@@ -117,6 +118,28 @@ std::string seals_named(std::string text) {
   return at == std::string::npos ? "" : text.substr(at > 60 ? at - 60 : 0, 120);
 }
 
+long count(const std::string& text, const std::string& words) {
+  long times = 0;
+  for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1)) ++times;
+  return times;
+}
+
+void leave_out(std::string& html, const std::string& from, const std::string& to) {
+  for (std::size_t begin = 0; (begin = html.find(from)) != std::string::npos;)
+    html.erase(begin, html.find(to, begin) + to.size() - begin);
+}
+
+/// A date in a page's text that a narrow line may break at its hyphens, with what stands before it; "": none.
+std::string date_that_may_break(std::string html) {
+  leave_out(html, "<svg", "</svg>");
+  leave_out(html, "<span class=\"whole\">", "</span>");
+  static const std::regex date(R"(\d\d\d\d-\d\d-\d\d)");
+  std::smatch found;
+  if (!std::regex_search(html, found, date)) return "";
+  const auto at = static_cast<std::size_t>(found.position());
+  return html.substr(at > 40 ? at - 40 : 0, 60);
+}
+
 Concluded concluded(const AssetConfig& asset) {
   const Configuration configuration = configuration_of(asset);
   const LayerSet layers = LayerSet::make(configuration).value();
@@ -183,6 +206,9 @@ TEST(OwnPlantLife, MonthlyTestsBecomeAConditionAndARemainingLife) {
   const std::string page = forecast_body(*question, *answer, {}).value();
   EXPECT_EQ(seals_named(page), "");
   EXPECT_THAT(page, HasSubstr("Condition of the stem packing, index derived from F_v (new: 100)"));
+  const std::string reasons = page.substr(page.find("what the advice and the forecast rest on"));
+  EXPECT_EQ(count(reasons, "condition now"), 1) << "no reason is given twice: " << reasons;
+  EXPECT_EQ(date_that_may_break(page), "");
 }
 
 }  // namespace

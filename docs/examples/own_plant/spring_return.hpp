@@ -12,6 +12,7 @@
 #include <array>
 
 #include "sealwatch/core/fields.hpp"
+#include "sealwatch/model/no_extra.hpp"
 #include "sealwatch/model/sites.hpp"
 #include "services/common/model/own_plant.hpp"
 #include "services/common/model/plant_tables.hpp"
@@ -42,7 +43,7 @@ struct SpringReturn {
                                         Site{"piston", SiteKind::piston_force}};
   enum SiteIndex { kDriverVoltage, kPistonForce };
 
-  // What laws see at a site, in the order that model/physics.hpp gives for its kind.
+  // What laws see at a site, in the order that model/sites.hpp gives for its kind.
   template <class R, class S, class P, class Extra>
   static std::array<R, kSiteSignals> signals(std::size_t site, const State<S>& y, const Input& input,
                                              const SpringReturnParameters<P>&, const Extra&) {

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "sealwatch/model/eha.hpp"
+#include "sealwatch/model/no_extra.hpp"
 
 namespace sealwatch {
 

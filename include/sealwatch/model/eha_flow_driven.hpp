@@ -15,6 +15,7 @@
 #include <algorithm>
 
 #include "sealwatch/model/eha.hpp"
+#include "sealwatch/model/no_extra.hpp"
 
 namespace sealwatch {
 

@@ -28,6 +28,7 @@
 #include "sealwatch/core/fields.hpp"
 #include "sealwatch/model/eha.hpp"
 #include "sealwatch/model/laws.hpp"
+#include "sealwatch/model/no_extra.hpp"
 #include "sealwatch/model/sites.hpp"
 
 namespace sealwatch {

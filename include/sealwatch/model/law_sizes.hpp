@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "sealwatch/model/physics.hpp"
 #include "sealwatch/model/plant_description.hpp"
 
 namespace sealwatch {

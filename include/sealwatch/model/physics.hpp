@@ -25,49 +25,12 @@
 #include <string_view>
 #include <vector>
 
-#include "sealwatch/core/fields.hpp"
 #include "sealwatch/core/result.hpp"
 #include "sealwatch/model/dual.hpp"
+#include "sealwatch/model/sites.hpp"
 
 namespace sealwatch {
 
-/// What a site takes, with its unit, and the signals that laws see there (unused ones are 0).
-///   voltage_command  V          current i, command u, its rate du/dt
-///   winding_voltage  V          current i, speed omega
-///   shaft_torque     N m        speed omega, pressure difference p_1 - p_2, current i
-///   pump_slip        m3/s       pressure difference p_1 - p_2, speed omega
-///   line_drop        Pa         flow into the chamber q, pressure drop D
-///   valve_crack      Pa         pressure drop D over the valve, flow q     (lowers the cracking pressure)
-///   outflow          m3/s       pressure above the reservoir p - p_0
-///   compliance       m3/Pa      absolute pressure
-///   seal_leakage     m3/s       pressure difference p_A - p_B, speed v, position x
-///   piston_force     N          speed v, position x, p_A, p_B
-///   inverse_modulus  1/Pa       absolute pressure                          (added to 1/beta)
-///   viscosity        1          dissipated power |z i|                     (relative change of viscosity)
-///   tank_flow        V/s        level                                      (of the tank that the flow leaves)
-///   own              plant's    the plant's (a balance of none of these kinds, for laws of the plant's own)
-///   sensor_*         channel    the simulated channel
-///   input_*          channel    the recorded input
-///   clock_rate       1          none
-SEALWATCH_ENUM(SiteKind, voltage_command, winding_voltage, shaft_torque, pump_slip, line_drop, valve_crack, outflow,
-               compliance, seal_leakage, piston_force, inverse_modulus, viscosity, tank_flow, own, sensor_bias,
-               sensor_gain, sensor_lag, sensor_drift, sensor_saturation, input_gain, input_bias, input_delay,
-               input_clock_rate, clock_rate)
-
-/// Laws of one measurement, which the simulation applies itself to what it simulated.
-[[nodiscard]] constexpr bool is_sensor(SiteKind kind) {
-  return kind >= SiteKind::sensor_bias && kind <= SiteKind::sensor_saturation;
-}
-/// Laws of the recorded input and of the recording's clock, which the simulation applies to the recording itself.
-[[nodiscard]] constexpr bool is_of_recording(SiteKind kind) { return kind > SiteKind::sensor_saturation; }
-/// Either: it takes no part in the physics.
-[[nodiscard]] constexpr bool is_of_measurement(SiteKind kind) { return is_sensor(kind) || is_of_recording(kind); }
-
-/// What a command's voltage feeds, where that is known: dead times of a bridge are asked at motors, the voltage below
-/// which a pump delivers nothing at pumps. A site or law of `anything` goes with all.
-SEALWATCH_ENUM(Feeds, anything, motor, pump)
-
-inline constexpr std::size_t kSiteSignals = 4;
 inline constexpr std::size_t kLawParameters = 4;
 inline constexpr std::size_t kLawRoundings = 2;
 /// Signals, hidden state, parameters: one direction each.
@@ -152,6 +115,12 @@ struct Law {
 /// Whether a plant has the law: the catalogue's are all plants'.
 [[nodiscard]] inline bool is_of_plant(const Law& law, std::string_view plant) {
   return law.plant.empty() || law.plant == plant;
+}
+
+/// Whether a law is asked at a site.
+[[nodiscard]] inline bool fits(const Law& law, const Site& site) {
+  return law.kind == site.kind && (law.element.empty() || law.element == site.element) &&
+         (law.feeds == site.feeds || law.feeds == Feeds::anything || site.feeds == Feeds::anything);
 }
 
 /// Makes a law known, before other threads run.

@@ -31,6 +31,9 @@
 
 namespace sealwatch {
 
+struct Law;
+struct LawParameter;
+
 /// Everything that a simulation depends on besides the recording. SI units.
 struct ModelValues {
   std::vector<double> parameters;  ///< in the order of PlantDescription::parameters, then those of the asset's physics

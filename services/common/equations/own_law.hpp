@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "sealwatch/model/physics.hpp"
 #include "services/common/equations/text_plant.hpp"
 
 namespace sealwatch::equations {

@@ -5,7 +5,7 @@
 #include <array>
 #include <string_view>
 
-#include "sealwatch/model/physics.hpp"
+#include "sealwatch/model/sites.hpp"
 
 namespace sealwatch::equations {
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "sealwatch/model/physics.hpp"
 #include "sealwatch/model/runtime_equations.hpp"
 #include "services/common/equations/formula.hpp"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sealwatch/model/physics.hpp"
 #include "services/common/dense/dense.hpp"
 
 namespace sealwatch::mismatch {

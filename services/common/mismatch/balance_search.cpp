@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sealwatch/model/physics.hpp"
 #include "services/common/core/in_parallel.hpp"
 #include "services/common/dense/dense.hpp"
 #include "services/common/mismatch/balance_options.hpp"

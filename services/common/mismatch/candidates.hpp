@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sealwatch/model/physics.hpp"
 #include "sealwatch/model/simulation.hpp"
 
 namespace sealwatch::mismatch {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <unsupported/Eigen/FFT>
 
+#include "sealwatch/model/physics.hpp"
+
 namespace sealwatch::mismatch {
 namespace {
 

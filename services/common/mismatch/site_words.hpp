@@ -4,8 +4,8 @@
 #include <array>
 #include <string_view>
 
-#include "sealwatch/model/physics.hpp"
 #include "sealwatch/model/plant_description.hpp"
+#include "sealwatch/model/sites.hpp"
 
 namespace sealwatch::mismatch {
 

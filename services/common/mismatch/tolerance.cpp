@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sealwatch/model/physics.hpp"
 #include "services/common/dense/dense.hpp"
 #include "services/common/mismatch/linear_algebra.hpp"
 #include "services/common/mismatch/normal_equations.hpp"

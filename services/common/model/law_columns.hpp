@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "sealwatch/model/physics.hpp"
 #include "sealwatch/model/simulation.hpp"
 
 namespace sealwatch {

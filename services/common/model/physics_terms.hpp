@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sealwatch/config/asset.hpp"
+#include "sealwatch/model/physics.hpp"
 #include "sealwatch/model/plant_description.hpp"
 #include "sealwatch/model/simulation.hpp"
 #include "sealwatch/model/sites.hpp"

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "sealwatch/model/dual.hpp"
+#include "sealwatch/model/physics.hpp"
 #include "sealwatch/model/simulation.hpp"
 #include "services/common/model/physics_terms.hpp"
 #include "services/common/model/recorded_input.hpp"

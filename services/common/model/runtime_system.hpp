@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "sealwatch/model/physics.hpp"
 #include "sealwatch/model/runtime_equations.hpp"
 #include "sealwatch/model/simulation.hpp"
 #include "services/common/model/physics_terms.hpp"

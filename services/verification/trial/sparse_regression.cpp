@@ -8,6 +8,7 @@
 #include <map>
 
 #include "sealwatch/model/eha.hpp"
+#include "sealwatch/model/no_extra.hpp"
 #include "services/common/model/law_columns.hpp"
 
 namespace sealwatch::verification {

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 
+#include "sealwatch/model/physics.hpp"
 #include "sealwatch/model/plant_description.hpp"
 #include "services/cli/commands.hpp"
 

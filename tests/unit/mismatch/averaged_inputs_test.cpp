@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "sealwatch/mismatch/explain.hpp"
+#include "sealwatch/model/physics.hpp"
 #include "services/common/mismatch/averaged_inputs.hpp"
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/runtime/asset_file.hpp"

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sealwatch/model/physics.hpp"
 #include "services/common/mismatch/explain_input.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "tests/unit/mismatch/simulated_test.hpp"

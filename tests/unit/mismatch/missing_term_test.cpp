@@ -8,6 +8,7 @@
 #include <numeric>
 #include <random>
 
+#include "sealwatch/model/physics.hpp"
 #include "services/common/mismatch/regime.hpp"
 #include "services/common/mismatch/smooth_input.hpp"
 #include "tests/unit/mismatch/simulated_test.hpp"

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "sealwatch/mismatch/explain.hpp"
+#include "sealwatch/model/physics.hpp"
 #include "services/common/mismatch/fitted_model.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "tests/unit/mismatch/simulated_test.hpp"

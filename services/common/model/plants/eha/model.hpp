@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sealwatch/model/eha.hpp"
+#include "sealwatch/model/no_extra.hpp"
 #include "services/common/model/plant_simulation.hpp"
 #include "services/common/model/start_values.hpp"
 

@@ -6,6 +6,7 @@
 
 #include "sealwatch/model/eha_switched.hpp"
 #include "sealwatch/model/law_sizes.hpp"
+#include "sealwatch/model/no_extra.hpp"
 
 namespace sealwatch::mismatch {
 namespace {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "services/cli/commands.hpp"
 #include "services/cli/layers.hpp"
@@ -30,6 +31,9 @@ constexpr std::size_t kTestsAhead = 6;
 constexpr std::uint64_t kLongestBacklog = 12;
 /// Without any sign of progress for this long, the replay gives up and says what it waits for.
 constexpr std::chrono::seconds kPatience{60};
+/// But where all services are heard, they may conclude from the last inputs for as long as they are let to: mismatch
+/// analyses take minutes, and nothing comes meanwhile.
+constexpr std::chrono::seconds kPatienceForConclusions{660};
 /// Services that run are heard within a second or two; those just started may need longer on a busy machine.
 constexpr std::chrono::seconds kPatienceForRunning{4};
 constexpr std::chrono::seconds kPatienceForStarted{15};
@@ -94,7 +98,11 @@ class LiveReplay {
       for (const BusItem& item : items) take(item);
       if (items.empty()) ask_for_missing();
       tend(supervisor);
-      if (steady_clock::now() - last_progress_ > kPatience) return stalled();
+      if (const auto since = steady_clock::now() - last_progress_; since > kPatience) {
+        if (!feeder_.done() || !quiescence_.is_concluding() || since > kPatienceForConclusions) return stalled();
+        if (!std::exchange(told_of_conclusions_, true))
+          log_.remark("waiting: " + quiescence_.explain() + "; a mismatch analysis takes minutes");
+      }
     }
     return interrupted() ? kAnswerIsNo : kOk;
   }
@@ -219,6 +227,7 @@ class LiveReplay {
   std::optional<StreamReader>
       reader_;  ///< conclusions in order and without gaps, from where the services stood at the start
   steady_clock::time_point last_progress_;
+  bool told_of_conclusions_ = false;
   std::set<std::string> known_topics_;  ///< of which something from before this replay was heard
 };
 

@@ -147,11 +147,21 @@ std::string Quiescence::explain() const {
 }
 
 void Quiescence::take(const ServiceStatus& status, Time now) {
-  Waiting& waiting = waiting_.try_emplace(status.service, Waiting{status.pending_inputs, now}).first->second;
+  Waiting& waiting = waiting_.try_emplace(status.service, Waiting{status.pending_inputs, now, now}).first->second;
   waiting.fewest = std::min(waiting.fewest, status.pending_inputs);
+  waiting.heard = now;
   ServiceStatus& last = last_[status.service];
   if (last.pending_inputs != status.pending_inputs) waiting.changed = now;
   last = status;
+}
+
+bool Quiescence::is_concluding(Time now) const {
+  const auto is_heard = [&](const auto& service) {
+    const auto found = waiting_.find(service.first);
+    return found != waiting_.end() && now - found->second.heard < kSilent;
+  };
+  const auto has_inputs = [](const auto& service) { return service.second.pending_inputs > 0; };
+  return std::ranges::all_of(inputs_of_, is_heard) && std::ranges::any_of(last_, has_inputs);
 }
 
 bool Quiescence::is_done(const ServiceStatus& status, Time now) const {

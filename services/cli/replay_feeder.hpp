@@ -77,6 +77,8 @@ class Quiescence {
   using Time = std::chrono::steady_clock::time_point;
   /// A layer may keep an input of long ago. What lay around before and becomes less is still being concluded from.
   static constexpr std::chrono::seconds kStill{3};
+  /// Of a service that was heard so long ago nothing is awaited.
+  static constexpr std::chrono::seconds kSilent{5};
 
   void take(const ServiceStatus& status, Time now = std::chrono::steady_clock::now());
   /// All expected services have been heard, none has more inputs waiting than the fewest since it was first heard, their
@@ -84,6 +86,8 @@ class Quiescence {
   /// its end, that of `source` up to `sequence` included.
   [[nodiscard]] bool reached(const std::string& source_writer, std::uint64_t source_sequence,
                              Time now = std::chrono::steady_clock::now()) const;
+  /// Whether all expected services are heard and one of them has inputs waiting.
+  [[nodiscard]] bool is_concluding(Time now = std::chrono::steady_clock::now()) const;
   /// Whether no service is so far behind the one before it that a replay should wait: `tests` messages about whole
   /// tests, or a stream's window of blocks of samples.
   [[nodiscard]] bool keeps_up(std::uint64_t tests) const;
@@ -102,6 +106,7 @@ class Quiescence {
   struct Waiting {
     std::uint64_t fewest = 0;
     Time changed{};
+    Time heard{};
   };
   std::map<std::string, std::vector<std::string>> inputs_of_;
   std::map<std::string, ServiceStatus> last_;

@@ -198,6 +198,22 @@ TEST(Quiescence, IsReachedWhenEveryStreamIsReadToItsEnd) {
   EXPECT_TRUE(quiescence.keeps_up(1));
 }
 
+/// A mismatch analysis takes minutes, in which nothing comes; of a service that is dead nothing will.
+TEST(Quiescence, KnowsAServiceThatConcludesFromOneThatIsDead) {
+  Quiescence quiescence({{"first", {"raw_samples"}}, {"second", {"test_window"}}});
+  Quiescence::Time now{};
+  quiescence.take(status("second", 3, {}, {}), now);
+  EXPECT_FALSE(quiescence.is_concluding(now)) << "the first was never heard";
+  quiescence.take(status("first", 0, {}, {}), now);
+  EXPECT_TRUE(quiescence.is_concluding(now));
+  now += Quiescence::kSilent;
+  quiescence.take(status("second", 3, {}, {}), now);
+  EXPECT_FALSE(quiescence.is_concluding(now)) << "the first is silent";
+  quiescence.take(status("first", 0, {}, {}), now);
+  quiescence.take(status("second", 0, {}, {}), now);
+  EXPECT_FALSE(quiescence.is_concluding(now)) << "nothing is waiting";
+}
+
 TEST(Quiescence, DoesNotWaitForInputsThatLayAroundBefore) {
   const Inputs inputs = {{"first", {"raw_samples"}}};
   Quiescence quiescence(inputs);

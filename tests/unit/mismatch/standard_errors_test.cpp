@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "sealwatch/model/physics.hpp"
 #include "services/common/mismatch/resolution.hpp"
 
 namespace sealwatch::mismatch {

@@ -271,7 +271,7 @@ bool Analysis::value_in_place_of_sensors(const Naming& found, const std::vector<
 }
 
 void Analysis::say_how_likely_by_noise(const Screening& screening) {
-  result_.p_value = excess(*baseline_) > kGross ? kSmallestP : std::max(screening.p_value, kSmallestP);
+  result_.p_value = largest_excess(*baseline_) > kGross ? kSmallestP : std::max(screening.p_value, kSmallestP);
   result_.statistically_significant = differs(screening.p_value, *baseline_, options_.false_alarm_rate);
 }
 

@@ -27,8 +27,11 @@ inline constexpr double kCannotTell = 6.0;
 [[nodiscard]] double criterion_behind(const FittedModel& model, const FittedModel& other);
 /// phi of the model.
 [[nodiscard]] double dispersion(const FittedModel& best);
+/// Mean squared residual of the channel that is missed most, in noise variances: a difference in one of many must not
+/// be lost in the mean of all.
+[[nodiscard]] double largest_excess(const FittedModel& model);
 /// Whether a fitted model and its recordings differ beyond the noise: by the scores of the laws, or grossly (mean
-/// squared residual above twice the noise variance), whatever any law says to it.
+/// squared residual of a channel above twice the noise variance), whatever any law says to it.
 [[nodiscard]] bool differs(double p_value, const FittedModel& model, double false_alarm_rate);
 
 /// Correlation from sample to sample of what the model leaves, per channel, as a first-order autoregression.

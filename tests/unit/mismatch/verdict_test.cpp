@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "sealwatch/mismatch/explain.hpp"
 #include "sealwatch/model/physics.hpp"
@@ -31,6 +32,23 @@ TEST(KeptAside, RecordingsThatDifferFromTheFittedOnesAreNotConsistent) {
   ASSERT_TRUE(other) << other.error().describe();
   EXPECT_EQ(other->verdict, Verdict::undetermined);
   EXPECT_NE(other->summary.find("the held-out ones do not"), std::string::npos) << other->summary;
+}
+
+// A beat of two frequencies that no law of the catalogue makes, in one of seven channels: 1.7 times its noise.
+TEST(Verdict, AChannelThatIsMissedIsNotLostInTheMeanOfAll) {
+  const auto with_beat = [](Recording recording) {
+    Series& current = *std::ranges::find(recording.samples.channels, "motor_current", &Series::name);
+    for (std::size_t k = 0; k < current.values.size(); ++k) {
+      const double t = recording.samples.time_s[k];
+      current.values[k] += 2.0 * current.noise_std * std::sin(140.0 * t + 25.0 * std::sin(1.7 * t));
+    }
+    return recording;
+  };
+  const AssetConfig asset = actuator();
+  const std::vector<Recording> fit{with_beat(recording_of(asset, 0.7)), with_beat(recording_of(asset, 1.0))};
+  const auto explanation = explain(asset, fit, std::vector{with_beat(recording_of(asset, 1.3))});
+  ASSERT_TRUE(explanation) << explanation.error().describe();
+  EXPECT_NE(explanation->verdict, Verdict::consistent) << explanation->summary;
 }
 
 // Four sensors are off, each by about as much of its noise and not to the same side, far beyond what these may be off by;

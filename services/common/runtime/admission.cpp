@@ -256,7 +256,7 @@ bool Admission::note_act(const std::string& asset_id, const std::string& act_id)
   if (!retraction) return false;
   Acts& acts = acts_[asset_id];
   if (!acts.retractions.insert(act_id).second) return false;  // every answer to it names it
-  if (means_nothing(asset_id, *retraction)) ++acts.idle;
+  if (means_nothing(asset_id, *retraction)) acts.idle.insert(act_id);
   tests_[asset_id].apply(*retraction);
   if (retraction->since)
     std::erase_if(on_their_way_[asset_id], [&](const auto& one) { return one.second >= retraction->since; });
@@ -276,6 +276,11 @@ bool Admission::means_nothing(const std::string& asset_id, const Retraction& ret
            const bool is_meant = retraction.since ? one.second >= retraction.since : one.first == retraction.pst_id;
            return is_meant && known.counts(one.first);
          });
+}
+
+bool Admission::meant_something(const std::string& asset_id, const std::string& act_id) const {
+  const auto acts = acts_.find(asset_id);
+  return acts != acts_.end() && acts->second.retractions.contains(act_id) && !acts->second.idle.contains(act_id);
 }
 
 std::optional<UtcTime> Admission::newest_test(const std::string& asset_id) const {
@@ -339,7 +344,7 @@ std::optional<std::string> Admission::refusal_of_report(const Message& message, 
 std::optional<Retraction> Admission::idle_retraction(const Message& message) const {
   const std::string asset_id = asset_of(message);
   const auto acts = acts_.find(asset_id);
-  if (acts == acts_.end() || acts->second.idle < kMostIdleRetractions) return std::nullopt;
+  if (acts == acts_.end() || acts->second.idle.size() < kMostIdleRetractions) return std::nullopt;
   auto retraction = retraction_of(asset_id, header_of(message).message_id);
   return retraction && means_nothing(asset_id, *retraction) ? retraction : std::nullopt;
 }

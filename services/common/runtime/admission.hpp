@@ -91,6 +91,8 @@ class Admission {
   /// Whether a retraction of the asset changes nothing. A test that others conclude from is known, with its date, before
   /// it is concluded here: else a service that is behind would refuse what others take.
   [[nodiscard]] bool means_nothing(const std::string& asset_id, const Retraction& retraction) const;
+  /// Whether a retraction counts here, and meant something when it came.
+  [[nodiscard]] bool meant_something(const std::string& asset_id, const std::string& act_id) const;
   /// Whether the configuration names it, or it was taken without.
   [[nodiscard]] bool knows(const std::string& asset_id) const {
     return assets_.names.contains(asset_id) || unknown_.contains(asset_id);
@@ -124,7 +126,7 @@ class Admission {
   struct Acts {
     std::set<std::string> retractions = {};  ///< and withdrawals, all that count
     std::set<std::string> replacements = {};
-    std::size_t idle = 0;  ///< retractions that meant nothing that was known when they came
+    std::set<std::string> idle = {};  ///< of the retractions those that meant nothing that was known when they came
   };
   std::map<std::string, Acts> acts_;  ///< by asset: message ids of what people said
   std::map<std::string, std::map<std::string, std::optional<UtcTime>>> on_their_way_;  ///< see means_nothing

@@ -88,6 +88,7 @@ void LayerRunner::count_past_acts(const std::string& asset_id) {
   const auto stands = standing_.find(asset_id);
   const std::string of_standing = "acknowledgement/" + (stands == standing_.end() ? "" : stands->second) + "/";
   for (const OperatorAct& act : past.mapped()) {
+    if (is_retraction_id(act.subject) && !admission_.meant_something(asset_id, act.subject)) continue;
     const bool is_seen = act.kind == name_of(Topic::acknowledgement);
     const std::string sort = sort_of(act, is_seen && !act.subject.starts_with(of_standing));
     (void)taken_acts_[sort].admits(std::chrono::steady_clock::now() - age(act, clock_.now()));

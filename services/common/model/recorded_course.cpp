@@ -56,8 +56,9 @@ void RecordedCourse::smooth(const std::vector<double>& time_s, const std::vector
   slopes_ = spline_slopes(times_, values_);
 }
 
-// Hermite's cubic between two knots.
+// Hermite's cubic between two knots; straight on beyond the last, where the integrator's last step may lead.
 double RecordedCourse::at(double time_s) const {
+  if (time_s > times_.back()) return values_.back() + slopes_.back() * (time_s - times_.back());
   while (knot_ + 2 < times_.size() && times_[knot_ + 1] <= time_s) ++knot_;
   while (knot_ > 0 && times_[knot_] > time_s) --knot_;
   const double distance_s = times_[knot_ + 1] - times_[knot_], s = (time_s - times_[knot_]) / distance_s, r = 1.0 - s;

@@ -48,6 +48,12 @@ TEST(RecordedCourse, KeepsTwoSamples) {
   EXPECT_NEAR(course.at(0.5), 3.0, 1e-12);
 }
 
+/// As of a free spline's end: a cubic would run away.
+TEST(RecordedCourse, GoesStraightOnBeyondItsEnd) {
+  const RecordedCourse course({0.0, 1.0, 2.0, 3.0}, {0.0, 1.0, 0.0, 1.0}, 0.1);
+  EXPECT_NEAR(course.at(6.0) - course.at(5.0), course.at(4.0) - course.at(3.0), 1e-12);
+}
+
 }  // namespace
 }  // namespace recorded_course
 }  // namespace sealwatch

@@ -146,7 +146,8 @@ TEST_F(Kept, AForecastIsOfTheSealThatIsInThereNow) {
   EXPECT_EQ(after.status, kAnswerIsNo) << after.errors;
   EXPECT_THAT(after.output, AllOf(HasSubstr("replaced on 2015-06-10, no test since"), Not(HasSubstr("month"))));
   EXPECT_THAT(content(folder_ / "life.html"),
-              AllOf(HasSubstr("replaced on 2015-06-10, no test since"), Not(HasSubstr("end of life about"))));
+              AllOf(HasSubstr("replaced on <span class=\"whole\">2015-06-10,</span> no test since"),
+                    Not(HasSubstr("end of life about"))));
   const Said json = forecast(true);
   EXPECT_EQ(json.status, kAnswerIsNo);
   EXPECT_THAT(json.output, AllOf(HasSubstr("insufficient_history"), HasSubstr("\"tests\": 0"),

@@ -3,12 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <random>
 
-#include "services/common/estimation/pem_search.hpp"
-#include "services/common/runtime/plant_file.hpp"
-#include "tests/unit/model/recording_for_tests.hpp"
+#include "tests/unit/estimation/search_of_plant.hpp"
 
 namespace sealwatch {
 namespace {
@@ -40,21 +37,11 @@ TimeSeries recording() {
 }
 
 TEST(CurvedValley, IsFollowedAlongItsBend) {
-  const std::string file = ::testing::TempDir() + "valley.yaml";
-  std::ofstream(file) << kPlant;
-  const auto plant = load_plant(file);
-  ASSERT_TRUE(plant) << plant.error().front().describe();
-  const TimeSeries samples = recording();
-  auto problem = make_pem_problem(nominal_asset("valley"), {&samples, 1});
-  ASSERT_TRUE(problem) << problem.error().describe();
-  const ActuatorFitOptions options;
-  problem->simulation_options = simulation_options({&samples, 1}, options);
-  const auto optimum = search(*problem, start_point(*problem, 1.0), options);
-  ASSERT_TRUE(optimum) << optimum.error().describe();
-  EXPECT_TRUE(optimum->converged) << optimum->termination;
-  EXPECT_LT(optimum->iterations, 25);
-  EXPECT_LT(optimum->cost, 0.5 * 1.3 * 400.0);  // the noise of both outputs
-  EXPECT_NEAR(problem->shared[0].to_value(optimum->point.shared[0]), kA, 4.0 * kRough / std::sqrt(200.0));
+  const SearchOfPlant valley = search_of_plant("valley", kPlant, recording());
+  EXPECT_TRUE(valley.optimum.converged) << valley.optimum.termination;
+  EXPECT_LT(valley.optimum.iterations, 25);
+  EXPECT_LT(valley.optimum.cost, 0.5 * 1.3 * 400.0);  // the noise of both outputs
+  EXPECT_NEAR(valley.value("a"), kA, 4.0 * kRough / std::sqrt(200.0));
 }
 
 }  // namespace

@@ -2,14 +2,10 @@
 // search goes, the less holds it. It ends at the end of the range, with the other parameters at what fits there.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <random>
 
-#include "services/common/estimation/pem_search.hpp"
-#include "services/common/runtime/plant_file.hpp"
-#include "tests/unit/model/recording_for_tests.hpp"
+#include "tests/unit/estimation/search_of_plant.hpp"
 
 namespace sealwatch {
 namespace {
@@ -42,30 +38,17 @@ TimeSeries recording() {
 }
 
 TEST(FlatDirection, DoesNotTakeTheSearchBeyondAllMeasure) {
-  const std::string file = ::testing::TempDir() + "saturating.yaml";
-  std::ofstream(file) << kPlant;
-  const auto plant = load_plant(file);
-  ASSERT_TRUE(plant) << plant.error().front().describe();
   TimeSeries samples = recording();
   samples.input_hold = true;
-  auto problem = make_pem_problem(nominal_asset("saturating"), {&samples, 1});
-  ASSERT_TRUE(problem) << problem.error().describe();
-  const ActuatorFitOptions options;
-  problem->simulation_options = simulation_options({&samples, 1}, options);
-  const auto optimum = search(*problem, start_point(*problem, 1.0), options);
-  ASSERT_TRUE(optimum) << optimum.error().describe();
-  EXPECT_TRUE(optimum->converged) << optimum->termination;
-  EXPECT_LT(optimum->iterations, 30);
-  const auto value = [&](std::string_view name) {
-    const auto at = std::ranges::find(problem->shared, name, &Unknown::name) - problem->shared.begin();
-    return problem->shared[static_cast<std::size_t>(at)].to_value(optimum->point.shared[static_cast<std::size_t>(at)]);
-  };
-  EXPECT_NEAR(value("k"), kLargest, 1e-3);
+  const SearchOfPlant saturating = search_of_plant("saturating", kPlant, samples);
+  const PemOptimum& optimum = saturating.optimum;
+  EXPECT_TRUE(optimum.converged) << optimum.termination;
+  EXPECT_LT(optimum.iterations, 30);
+  EXPECT_NEAR(saturating.value("k"), kLargest, 1e-3);
   // Nothing lower beside it: T is where its own search from there ends.
-  PemPoint again = optimum->point;
-  const auto polished = search(*problem, again, options);
-  ASSERT_TRUE(polished);
-  EXPECT_NEAR(optimum->cost, polished->cost, 1e-3 * polished->cost);
+  const auto polished = search(saturating.problem, optimum.point, saturating.options);
+  ASSERT_TRUE(polished) << polished.error().describe();
+  EXPECT_NEAR(optimum.cost, polished->cost, 1e-3 * polished->cost);
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ enum Node : std::size_t { control, acquisition, manipulation, detection, health,
 struct Box {
   std::string_view name, says;
   std::vector<Topic> next = {};  ///< what it passes to the box below
+  std::vector<Topic> back = {};  ///< what it gets from there
 };
 
 /// As docs/topics.md has them.
@@ -30,11 +31,11 @@ std::array<Box, kNodes> all_boxes() {
            {"state detection", "alert regions, verdict, overdue", {Topic::state_report}},
            {"health assessment", "grade, likely faults, mismatch", {Topic::health_report}},
            {"prognostic assessment", "leakage, remaining life", {Topic::leakage_estimate, Topic::remaining_life}},
-           {"advisory generation", "what to do, by when, why", {Topic::advisory}},
+           {"advisory generation", "what to do, by when, why", {Topic::advisory}, {Topic::acknowledgement}},
            {"operators' systems, sealwatch status and watch", "and a subscriber of your own"}}};
 }
 
-/// A topic that goes elsewhere than to the box below.
+/// A topic that goes elsewhere than to the next box.
 struct Route {
   Topic topic;
   Node from;
@@ -45,7 +46,6 @@ struct Route {
 /// The short ones first: they get the lanes next to the boxes.
 std::vector<Route> all_routes() {
   return {{Topic::test_features, manipulation, {health}},
-          {Topic::acknowledgement, operators, {advice}},
           {Topic::health_report, health, {advice}},
           {Topic::test_window, manipulation, {health, prognosis}},
           {Topic::model_discrepancy, health, {detection, prognosis, operators}},
@@ -62,14 +62,18 @@ constexpr std::string_view kAlsoAmongServices = ", service_status, resend_reques
 /// A picture without one of the topics is not drawn.
 void expect_all_topics(const std::array<Box, kNodes>& boxes, const std::vector<Route>& routes) {
   std::set<Topic> drawn(kAmongServices.begin(), kAmongServices.end());
-  for (const Box& box : boxes) drawn.insert(box.next.begin(), box.next.end());
+  for (const Box& box : boxes) {
+    drawn.insert(box.next.begin(), box.next.end());
+    drawn.insert(box.back.begin(), box.back.end());
+  }
   for (const Route& route : routes) drawn.insert(route.topic);
   if (drawn.size() != EnumNames<Topic>::kNames.size())
     throw std::runtime_error("the picture of the layers lacks a topic: add it to the boxes or routes");
 }
 
-constexpr double kStep = 92.0, kHeight = 52.0, kWidth = 400.0, kLeft = 20.0, kTop = 14.0;
-constexpr double kLane = 27.0;
+// The step leaves a topic's name room between the lines of one box and those of the next.
+constexpr double kStep = 100.0, kHeight = 52.0, kWidth = 400.0, kLeft = 20.0, kTop = 14.0;
+constexpr double kLane = 27.0, kPort = 10.4;  // between lines side by side
 
 constexpr int kScreenWidth = 1180;  // of the pages
 
@@ -84,12 +88,23 @@ std::string box(double x, double y, double width, double height) {
          std::to_string(width) + "\" height=\"" + std::to_string(height) + "\" rx=\"5\"/>\n";
 }
 
-std::string arrow(double x, double from, double to) {
+/// Down or up, whichever `to` is.
+std::string arrow(double x, double from, double to, const std::string& ink = "--muted") {
   const std::string at = std::to_string(x);
-  return "<path class=\"wire\" d=\"M" + at + ' ' + std::to_string(from) + 'V' + std::to_string(to - 3.0) +
-         "\"/><path d=\"M" + std::to_string(x - 5.0) + ' ' + std::to_string(to - 8.0) + 'L' + at + ' ' +
-         std::to_string(to) + 'L' + std::to_string(x + 5.0) + ' ' + std::to_string(to - 8.0) +
-         "Z\" style=\"fill:var(--muted)\"/>\n";
+  const double down = to > from ? 1.0 : -1.0;
+  const std::string shoulder = ' ' + std::to_string(to - 8.0 * down);
+  return "<path class=\"wire\" style=\"stroke:var(" + ink + ")\" d=\"M" + at + ' ' + std::to_string(from) + 'V' +
+         std::to_string(to - 3.0 * down) + "\"/><path d=\"M" + std::to_string(x - 5.0) + shoulder + 'L' + at + ' ' +
+         std::to_string(to) + 'L' + std::to_string(x + 5.0) + shoulder + "Z\" style=\"fill:var(" + ink + ")\"/>\n";
+}
+
+/// Of a topic's name at 11 px.
+double width_of(std::string_view name) {
+  constexpr std::string_view kWide = "mw", kNarrow = "fijlrt";
+  double pixels = 0.0;
+  for (const char letter : name)
+    pixels += kWide.find(letter) != kWide.npos ? 9.9 : kNarrow.find(letter) != kNarrow.npos ? 3.9 : 6.5;
+  return pixels;
 }
 
 /// Routes on the right of the boxes: each topic in a lane of its own, with an arrow into each of its readers.
@@ -148,7 +163,8 @@ class Lanes {
   };
 
   [[nodiscard]] double clear_height(const Name& name) const {
-    const double half = 3.4 * static_cast<double>(name.text.size()) + 2.0;
+    constexpr double kOverhang = 12.0, kClear = 3.0;
+    const double half = 0.5 * width_of(name.text) + kClear;
     const double middle = 0.5 * (name.high + name.low);
     const auto passing = [&](double height) {
       return std::ranges::count_if(crossings_, [&](const Crossing& line) {
@@ -156,15 +172,16 @@ class Lanes {
       });
     };
     double best = middle;
-    for (double away = 1.0; name.high + half <= middle - away; away += 1.0)
+    for (double away = 1.0; name.high + half <= middle - away + kOverhang; away += 1.0)
       for (const double height : {middle - away, middle + away})
         if (passing(height) < passing(best)) best = height;
     return best;
   }
   static std::string at(double pixels) { return std::to_string(std::lround(pixels)) + ' '; }
   double next_port(Node node) {
-    const double share = static_cast<double>(++used_[node]) / static_cast<double>(ports_[node] + 1);
-    return kTop + kStep * static_cast<double>(node) + share * kHeight;
+    const double apart = std::min(kPort, kHeight / static_cast<double>(ports_[node] + 1));
+    const double from_middle = static_cast<double>(++used_[node]) - 0.5 * static_cast<double>(ports_[node] + 1);
+    return kTop + kStep * static_cast<double>(node) + 0.5 * kHeight + apart * from_middle;
   }
   /// The first in which nothing else is between the two heights.
   std::size_t free_lane(double high, double low) {
@@ -195,7 +212,8 @@ std::string actuator() {
 }
 
 std::string layers() {
-  constexpr double kMiddle = kLeft + 0.5 * kWidth;
+  constexpr double kMiddle = kLeft + 0.5 * kWidth, kBack = kLeft + 0.7 * kWidth;
+  constexpr double kWords = 0.5 * (kStep - kHeight) + 4.0;  // under a box, beside its arrow
   const std::array<Box, kNodes> boxes = all_boxes();
   Canvas canvas("The six layers with their topics", 700, static_cast<int>(kStep * static_cast<double>(kNodes)) + 24);
   double y = kTop;
@@ -205,7 +223,11 @@ std::string layers() {
     canvas.text(one.says, kMiddle, y + 39.0, "tick", "middle");
     if (!one.next.empty()) {
       canvas.raw(arrow(kMiddle, y + kHeight, y + kStep));
-      canvas.text(joined(one.next), kMiddle + 14.0, y + kHeight + 24.0);
+      canvas.text(joined(one.next), kMiddle + 14.0, y + kHeight + kWords);
+    }
+    if (!one.back.empty()) {
+      canvas.raw(arrow(kBack, y + kStep, y + kHeight, "--second"));
+      canvas.text(joined(one.back), kBack + 14.0, y + kHeight + kWords);
     }
     y += kStep;
   }

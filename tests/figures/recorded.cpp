@@ -88,6 +88,10 @@ std::string valve_signature(const Recording& recording) {
             .height = 340};
   const auto& position = test.position();
   const auto& pressure = test.smooth_load_pressure();
+  // Room at both ends, where the pressure changes at rest: on the frame that would not be seen.
+  const auto [least, largest] = std::ranges::minmax(position);
+  const double room = 0.02 * (largest - least);
+  plot.x.range = {least - room, largest + room};
   for (const signal::MotionPhase& phase : test.phases()) {
     const signal::Range range = test.range(phase);
     Line line{.label = name_of(phase.kind)};

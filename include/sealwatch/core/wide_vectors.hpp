@@ -2,6 +2,8 @@
 // and of four, where the processor has them. Products and sums are the same ones in the same order: so is the result.
 #pragma once
 
+#include <cstddef>
+
 // Not with sanitizers, which the choice at start-up comes before.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
@@ -15,6 +17,6 @@ namespace sealwatch {
 /// Four doubles, in several vectors where the processor has shorter ones. Not to be handed from function to function,
 /// which is done differently with and without wide vectors.
 using WideVector [[gnu::vector_size(32)]] = double;
-inline constexpr int kWidth = 4;
+inline constexpr std::size_t kWidth = 4;
 
 }  // namespace sealwatch

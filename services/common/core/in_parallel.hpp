@@ -54,12 +54,10 @@ std::vector<Item> in_parallel(std::size_t count, int threads, const F& f) {
     spare.give();
   };
   int taken = 0;
-  while (static_cast<std::size_t>(threads + taken) < count && spare_threads != nullptr && spare_threads->take())
-    ++taken;
+  while (std::cmp_less(threads + taken, count) && spare_threads != nullptr && spare_threads->take()) ++taken;
   std::vector<std::jthread> others;
   try {
-    for (int other = 1; other < threads + taken && static_cast<std::size_t>(other) < count; ++other)
-      others.emplace_back(work);
+    for (int other = 1; other < threads + taken && std::cmp_less(other, count); ++other) others.emplace_back(work);
   } catch (const std::system_error&) {
     // The system grants no more threads: those that there are do it.
   }

@@ -19,13 +19,13 @@ constexpr Eigen::Index kPanel = 8;  // columns side by side: one of the widest v
 template <int Rows, int Width>
 [[gnu::always_inline]] inline void panel_product(const double* a, const double* b, Eigen::Index rows, double* sums) {
   using Vector [[gnu::vector_size(Width * sizeof(double))]] = double;
-  constexpr int kVectors = kPanel / Width;
+  constexpr Eigen::Index kVectors = kPanel / Width;
   for (int first = 0; first < kPanel; first += Rows) {
     Vector sum[Rows][kVectors] = {};
     const double *left = a + first, *right = b;
     for (Eigen::Index row = 0; row < rows; ++row, left += kPanel, right += kPanel)
 #pragma GCC unroll 8
-      for (int v = 0; v < kVectors; ++v) {
+      for (Eigen::Index v = 0; v < kVectors; ++v) {
         Vector of_right;
         __builtin_memcpy(&of_right, right + v * Width, sizeof(of_right));
 #pragma GCC unroll 8
@@ -34,7 +34,7 @@ template <int Rows, int Width>
 #pragma GCC unroll 8
     for (int i = 0; i < Rows; ++i)
 #pragma GCC unroll 8
-      for (int v = 0; v < kVectors; ++v)
+      for (Eigen::Index v = 0; v < kVectors; ++v)
         __builtin_memcpy(sums + (first + i) * kPanel + v * Width, &sum[i][v], sizeof(Vector));
   }
 }

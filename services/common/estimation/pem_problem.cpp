@@ -197,8 +197,9 @@ Result<PemRecording> make_recording(const AssetConfig& asset, const TimeSeries& 
   const std::span<const std::string> channels = recording.simulation->channels();
   recording.noise_std.resize(static_cast<Eigen::Index>(channels.size()));
   for (std::size_t c = 0; c < channels.size(); ++c) {
-    const double noise_std = noise_std_of(asset, *recorded.find(channels[c]), recorded.time_s);
-    recording.noise_std(static_cast<Eigen::Index>(c)) = noise_std > 0.0 ? noise_std : kInfinity;
+    const double estimated = noise_std_of(asset, *recorded.find(channels[c]), recorded.time_s);
+    const double noise_std = estimated > 0.0 ? estimated : kInfinity;
+    recording.noise_std(static_cast<Eigen::Index>(c)) = noise_std;
   }
   Result<std::vector<Unknown>> own = own_unknowns(*recording.simulation, !window);
   if (!own) return fail(own.error());

@@ -153,12 +153,7 @@ Status HostProcess::request(Operation operation, const char* what, double second
       told = true;
     }
     if (waited < most) continue;
-    const std::string where = place(what, time_s), memory = exhausted_memory();
-    kill_and_reap();
-    const std::string silent = "did not answer within " + std::to_string(std::lround(most)) + " s and was ended";
-    return fail(failure(where, "the FMU " + (memory.empty() ? "" : "ran out of memory: it " + memory + ", ") + silent,
-                        (memory.empty() ? "its binary hangs: " : "its binary takes memory without end: ") +
-                            ("try it in the tool that made it" + said() + printed())));
+    return fail(end_silent(place(what, time_s), most));
   }
   if (header_->status != AnswerStatus::failed) return {};
   std::array<char, kTextBytes> text{};
@@ -206,6 +201,18 @@ std::string HostProcess::advice_of(Operation operation) const {
 
 Error HostProcess::failure(const std::string& what, std::string rule, std::string advice) const {
   return {.file = file_, .place = what, .value = {}, .rule = std::move(rule), .advice = std::move(advice)};
+}
+
+Error HostProcess::end_silent(const std::string& where, double waited_s) {
+  const std::string memory = exhausted_memory();  // of the process while there is one
+  kill_and_reap();
+  std::string seen = "the FMU ", cause = "its binary hangs: ";
+  if (!memory.empty()) {
+    seen.append("ran out of memory: it ").append(memory).append(", ");
+    cause = "its binary takes memory without end: ";
+  }
+  seen.append("did not answer within ").append(std::to_string(std::lround(waited_s))).append(" s and was ended");
+  return failure(where, std::move(seen), cause + "try it in the tool that made it" + said() + printed());
 }
 
 Error HostProcess::ended(const std::string& what, int status) const {

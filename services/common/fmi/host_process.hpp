@@ -77,6 +77,8 @@ class HostProcess {
   [[nodiscard]] std::string advice_of(Operation operation) const;
   [[nodiscard]] Error failure(const std::string& what, std::string rule, std::string advice) const;
   [[nodiscard]] Error ended(const std::string& what, int status) const;
+  /// Ends a process that has not answered for so long.
+  [[nodiscard]] Error end_silent(const std::string& where, double waited_s);
   /// Where a run is, from what the process has written down before it called the binary.
   [[nodiscard]] std::string place(const char* what, double time_s) const;
   [[nodiscard]] std::string printed() const;

@@ -165,11 +165,13 @@ std::optional<SiUnit> ModelDescription::si_unit_of(const Variable& variable) con
 std::string ModelDescription::name_of(const Element& element) const {
   const Variable& variable = variables[element.variable];
   if (variable.size == 1) return variable.name;
-  std::string indices;
   std::size_t rest = element.element;
-  for (std::size_t k = variable.extents.size(); k-- > 0; rest /= variable.extents[k])
-    indices = std::to_string(rest % variable.extents[k] + 1) + (indices.empty() ? "" : ",") + indices;
-  return variable.name + "[" + indices + "]";
+  std::vector<std::size_t> indices(variable.extents.size());
+  for (std::size_t k = indices.size(); k-- > 0; rest /= variable.extents[k])
+    indices[k] = rest % variable.extents[k] + 1;
+  std::string name = variable.name + "[";
+  for (std::size_t k = 0; k < indices.size(); ++k) name.append(k == 0 ? "" : ",").append(std::to_string(indices[k]));
+  return name.append("]");
 }
 
 Result<Element> ModelDescription::find_element(std::string_view name) const {

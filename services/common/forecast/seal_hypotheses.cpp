@@ -89,7 +89,7 @@ class Bank {
     SealOpinion opinion{
         .hypotheses = {}, .law = law_, .extra_std = noise_.extra_std, .irregularity_scale = noise_.irregularity_scale};
     for (auto& [log_posterior, hypothesis] : all)
-      if (hypothesis.weight > kSmallestWeight * sum) opinion.hypotheses.push_back(std::move(hypothesis));
+      if (hypothesis.weight > kSmallestWeight * sum) opinion.hypotheses.push_back(hypothesis);
     double kept = 0.0;
     for (const SealHypothesis& hypothesis : opinion.hypotheses) kept += hypothesis.weight;
     for (SealHypothesis& hypothesis : opinion.hypotheses) hypothesis.weight /= kept;
@@ -209,7 +209,7 @@ class Bank {
       belief.covariance[0] += kLevelChange * kLevelChange;
     }
     for (std::size_t i = first; i < tests_.size(); ++i) take_in(belief, tests_[i], first_age);
-    return {log_prior + belief.log_evidence, std::move(hypothesis)};
+    return {log_prior + belief.log_evidence, hypothesis};
   }
 
   const std::vector<DatedTest>& tests_;

@@ -83,7 +83,7 @@ class PlantSystem : public SizedSystem<kSizeOf<Model, WithPhysics>> {
     if constexpr (WithPhysics)
       for (const ActiveTerm& term : terms_.active)
         if (term.hidden >= 0 && term.law->hidden->settled)
-          fast[static_cast<std::size_t>(kPlantStates + term.hidden)] = true;
+          fast[static_cast<std::size_t>(kPlantStates) + static_cast<std::size_t>(term.hidden)] = true;
     return fast;
   }
 

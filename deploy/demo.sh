@@ -2,14 +2,15 @@
 # From a fresh Debian 12 machine to a forecast: installs packages, builds, starts the six services, plays nine years of
 # monthly partial stroke tests of one actuator through them over DDS, and shows the forecast with its reasons.
 #   deploy/demo.sh               with a life recorded by sealwatch's own virtual bench
-#   deploy/demo.sh --data DIR    with the recordings (*.csv, *.mat) in DIR
+#   deploy/demo.sh --data DIR    with the recordings (*.csv, *.mat) in DIR, of assets in config/assets that sidecars name
+#                                (docs/recordings.md)
 # Needs root or sudo for the packages, nothing else. Everything it makes is in build/ and demo/ of this checkout. Run it
 # again as often as you like.
 set -euo pipefail
 started_in=$PWD
 cd "$(dirname "$0")/.."
 
-usage() { sed -n '2,7s/^# \{0,1\}//p' "$0"; exit "$1"; }
+usage() { sed -n '2,8s/^# \{0,1\}//p' "$0"; exit "$1"; }
 data=
 while [ $# -gt 0 ]; do
   case "$1" in
@@ -57,7 +58,7 @@ Look further (first: export PATH=\$PWD/build/release/bin:\$PATH):
                                                      the forecast as a page for a browser
   sealwatch show $asset --state demo/state         what the advice was concluded from, down to the recording
   sealwatch up --config config --state demo/state    the services again, with what they remember
-  sealwatch status                                   then, in another terminal: the last word on every actuator,
+  sealwatch status                                   then, in another terminal: the latest advice on every actuator,
                                                      and the command that acknowledges its advice
   sealwatch watch                                    every message, live
   demo/results/*.jsonl                               all conclusions, a JSON line each

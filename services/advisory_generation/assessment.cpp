@@ -151,7 +151,10 @@ std::string reason_to_repeat(const Evidence& evidence) {
   const bool repetition_helps = evidence.life.threshold > 0.0 && evidence.leakage.header.event_time_known;
   if (evidence.leakage.used_for_forecast || !repetition_helps) return {};
   std::string reason = "the test could not be used";
-  if (!evidence.leakage.reasons.empty()) reason += ": " + evidence.leakage.reasons.front();
+  // Of a test that was not judged, why; that it was not follows from "could not be used".
+  const bool not_judged = state.verdict == PstVerdict::not_judged;
+  const std::vector<std::string>& why = not_judged ? state.verdict_reasons : evidence.leakage.reasons;
+  if (!why.empty()) reason += ": " + why.front();
   const bool fit_failed = !evidence.leakage.fits.empty() && evidence.health.admissible_for_prognosis;
   if (fit_failed)
     reason += "; where a repetition ends alike, the model does not describe this actuator (sealwatch explain)";

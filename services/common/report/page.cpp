@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "services/common/text/words.hpp"
+
 namespace sealwatch::report {
 namespace {
 
@@ -177,16 +179,18 @@ std::string unbroken(std::string_view text) {
   constexpr std::string_view kDash = "\xE2\x80\x93";
   std::string html;
   while (!text.empty()) {
-    const std::string_view word = text.substr(0, std::min(text.find(' '), text.size() - 1) + 1);
-    const bool figures = word.find_first_of("0123456789") != std::string_view::npos;
-    const bool breaks = word.find('-') != std::string_view::npos || word.find(kDash) != std::string_view::npos;
-    const std::string_view bare = word.ends_with(' ') ? word.substr(0, word.size() - 1) : word;
+    const std::string_view bare = text.substr(0, text::end_of_word(text));
+    const bool figures = bare.find_first_of("0123456789") != std::string_view::npos;
+    const bool breaks =
+        bare.find_first_of("- ") != std::string_view::npos || bare.find(kDash) != std::string_view::npos;
     if (figures && breaks)
       html.append("<span class=\"whole\">").append(bare).append("</span>");
     else
       html.append(bare);
-    if (bare.size() < word.size()) html += ' ';
-    text.remove_prefix(word.size());
+    text.remove_prefix(bare.size());
+    if (text.empty()) break;
+    html += ' ';
+    text.remove_prefix(1);
   }
   return html;
 }

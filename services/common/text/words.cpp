@@ -66,11 +66,17 @@ std::string padded(std::string_view text, std::size_t width) {
   return result;
 }
 
+std::size_t end_of_word(std::string_view text) {
+  std::size_t end = text.find(' ');
+  while (end != text.npos && text.substr(end + 1).starts_with('%')) end = text.find(' ', end + 1);
+  return std::min(end, text.size());
+}
+
 std::string wrapped(std::string_view text, std::size_t width, std::size_t indent) {
   std::string result;
   std::size_t column = indent;
   while (!text.empty()) {
-    const std::size_t end = std::min(text.find(' '), text.size());
+    const std::size_t end = end_of_word(text);
     if (column > indent && column + 1 + end > width) {
       result += '\n';
       result.append(indent, ' ');

@@ -28,7 +28,9 @@ void add_to_list(std::string& text, std::string_view part, std::string_view betw
 [[nodiscard]] std::size_t letters(std::string_view text);
 /// `text` and blanks up to `width` characters.
 [[nodiscard]] std::string padded(std::string_view text, std::size_t width);
-/// Breaks `text` into lines of at most `width` characters at blanks, each later line behind `indent` blanks.
+/// Where the first word of `text` ends: at a blank, but a number and its percent sign are one word.
+[[nodiscard]] std::size_t end_of_word(std::string_view text);
+/// Breaks `text` into lines of at most `width` characters between words, each later line behind `indent` blanks.
 [[nodiscard]] std::string wrapped(std::string_view text, std::size_t width, std::size_t indent);
 
 }  // namespace sealwatch::text

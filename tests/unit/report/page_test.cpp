@@ -39,6 +39,8 @@ TEST(Page, FiguresStayOnOneLineWhereATableIsNarrow) {
   EXPECT_EQ(unbroken("about 2021-04-15, then"), "about <span class=\"whole\">2021-04-15,</span> then");
   EXPECT_EQ(unbroken("100 (47.8\u2013100)"), "100 <span class=\"whole\">(47.8\u2013100)</span>");
   EXPECT_EQ(unbroken("well-known 36 "), "well-known 36 ");
+  EXPECT_EQ(unbroken("below 60 %"), "below <span class=\"whole\">60 %</span>");
+  EXPECT_EQ(unbroken("misfit, %"), "misfit, %");
   Table table({"date", ">of"});
   table.row({"2021-04-15", "1 \u00B1 2"});
   EXPECT_NE(table.html().find("<td><span class=\"whole\">2021-04-15</span></td><td class=\"n\">1 \u00B1 2</td>"),

@@ -33,6 +33,7 @@ TEST(Words, CountTheirLettersAsReadersDo) {
   EXPECT_EQ(padded("µm", 4), "µm  ");
   EXPECT_EQ(padded("longer", 4), "longer");
   EXPECT_EQ(wrapped("one two three", 8, 2), "one\n  two\n  three");
+  EXPECT_EQ(wrapped("is 60.0 % (limit)", 7, 0), "is\n60.0 %\n(limit)");
 }
 
 TEST(Words, AListGrowsPartByPart) {

@@ -21,6 +21,9 @@ namespace {
 constexpr std::size_t kMostObjects = 10'000;
 constexpr hsize_t kMostColumns = 256;  // as channels of a test
 
+/// Of a compound or a matrix, as logs name it in their map.
+std::string part_of(const std::string& name, const std::string& part) { return name + "/" + part; }
+
 bool is_number(hid_t type) {
   const H5T_class_t kind = H5Tget_class(type);
   return kind == H5T_INTEGER || kind == H5T_FLOAT;
@@ -142,7 +145,7 @@ class Reader {
       const Hdf5Handle one(H5Tcreate(H5T_COMPOUND, sizeof(double)), &H5Tclose);
       H5Tinsert(one.get(), column.c_str(), 0, H5T_NATIVE_DOUBLE);
       const std::vector<double> values = read(data, one.get(), length, name);
-      if (status) add(name + "/" + column, values, said.units.size() == count ? said.units[member] : "", said);
+      if (status) add(part_of(name, column), values, said.units.size() == count ? said.units[member] : "", said);
     }
   }
 
@@ -156,7 +159,7 @@ class Reader {
       const std::string last = said.names.size() == shape.columns ? said.names[column] : std::to_string(column + 1);
       std::string unit = said.units.empty() ? "" : said.units.front();
       if (said.units.size() > 1) unit = said.units.size() == shape.columns ? said.units[column] : "";
-      add(shape.columns > 1 ? name + "/" + last : name, std::move(values), unit, said);
+      add(shape.columns > 1 ? part_of(name, last) : name, std::move(values), unit, said);
     }
   }
 

@@ -149,7 +149,7 @@ class Mapper {
   [[nodiscard]] std::string unit_for(const std::string& channel, const OfferedColumn& column,
                                      const ColumnMapping& mapping) const {
     if (!mapping.unit.empty()) return mapping.unit;
-    const std::string said = unit_of(column);
+    std::string said = unit_of(column);
     if (!said.empty() || column.text == channel) return said;
     return unit_at_the_end(column.text, channel == "time" ? "s" : si_unit_of(channel));
   }

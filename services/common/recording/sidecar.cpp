@@ -138,9 +138,12 @@ std::string with_end(const std::string& text) { return text + (text.ends_with('\
 /// Which text was left open: the last one that stands in `text`.
 Error open_quote_error(const std::string& text, const YAML::Exception& problem) try {
   const YAML::Node document = YAML::Load(text.ends_with('\n') ? text : text + "\n");
-  KeyValue last;
-  for (const auto& entry : document) last = {entry.first.Scalar(), entry.second, entry.first.Mark().line + 1};
-  return key_error(last, "is not YAML: the quoted text has no closing quote");
+  const auto error_of = [](const KeyValue& item) {
+    return key_error(item, "is not YAML: the quoted text has no closing quote");
+  };
+  Error last = error_of({});
+  for (const auto& entry : document) last = error_of({entry.first.Scalar(), entry.second, entry.first.Mark().line + 1});
+  return last;
 } catch (const YAML::Exception&) {  // inside brackets, which are open then as well
   return yaml_error(problem);
 }

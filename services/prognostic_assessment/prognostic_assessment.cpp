@@ -105,9 +105,11 @@ void PrognosticAssessment::remember(const LeakageEstimate& estimate) {
   history_[estimate.asset_id].add(estimate);
 }
 
-Conclusion PrognosticAssessment::receive(const Message& input) {
-  if (const auto* health = std::get_if<HealthReport>(&input)) return join(*health, &Pending::health);
-  if (const auto* window = std::get_if<TestWindow>(&input)) return join(*window, &Pending::windows);
+Conclusion PrognosticAssessment::receive(const Message& input) { return receive_until(input, {}); }
+
+Conclusion PrognosticAssessment::receive_until(const Message& input, const std::stop_token& stop) {
+  if (const auto* health = std::get_if<HealthReport>(&input)) return join(*health, &Pending::health, stop);
+  if (const auto* window = std::get_if<TestWindow>(&input)) return join(*window, &Pending::windows, stop);
   if (const auto* event = std::get_if<MaintenanceEvent>(&input))
     return is_replacement(*event) ? replaced(*event) : retracted(*event);
   Conclusion conclusion;
@@ -119,7 +121,7 @@ Conclusion PrognosticAssessment::receive(const Message& input) {
 }
 
 template <class Input>
-Conclusion PrognosticAssessment::join(const Input& input, Halves<Input> Pending::*halves) {
+Conclusion PrognosticAssessment::join(const Input& input, Halves<Input> Pending::*halves, const std::stop_token& stop) {
   const std::string& pst_id = input.header.pst_id;
   if (pst_id.empty() || history_[input.asset_id].has_estimate(estimate_id(pst_id)))
     return {.outputs = {}, .consumed = {input.header.message_id}};
@@ -130,16 +132,17 @@ Conclusion PrognosticAssessment::join(const Input& input, Halves<Input> Pending:
   if (!pending.health.is_here(pst_id, conclusion) || !pending.windows.is_here(pst_id, conclusion)) return conclusion;
   const HealthReport health = pending.health.take(pst_id, conclusion);
   const TestWindow window = pending.windows.take(pst_id, conclusion);
-  conclusion.outputs = conclude(health, window);
+  conclusion.outputs = conclude(health, window, stop);
   conclusion.consumed.push_back(health.header.message_id);
   conclusion.consumed.push_back(window.header.message_id);
   return conclusion;
 }
 
-std::vector<Message> PrognosticAssessment::conclude(const HealthReport& health, const TestWindow& window) {
+std::vector<Message> PrognosticAssessment::conclude(const HealthReport& health, const TestWindow& window,
+                                                    const std::stop_token& stop) {
   learn_replacements(health.asset_id, health.header);
   meet(health.asset_id, health.header.pst_id);
-  LeakageEstimate leakage = estimate(health, window);
+  LeakageEstimate leakage = estimate(health, window, stop);
   leakage.header = concluded_from(health.header, "leakage_estimate", kProducer,
                                   {health.header.message_id, window.header.message_id});
   const RemainingLife life = remaining_life(leakage);
@@ -158,12 +161,13 @@ std::vector<Message> PrognosticAssessment::conclude(const HealthReport& health, 
   return outputs;
 }
 
-LeakageEstimate PrognosticAssessment::estimate(const HealthReport& health, const TestWindow& window) const {
+LeakageEstimate PrognosticAssessment::estimate(const HealthReport& health, const TestWindow& window,
+                                               const std::stop_token& stop) const {
   LeakageEstimate estimate;
   if (const AssetConfig* nominal = configuration_.find_asset(health.asset_id)) {
     const AcceptedModel& model = accepted(health.asset_id);
     const AssetConfig asset = model.applied_to(*nominal);
-    estimate = judge_estimate(asset, health, estimator_.estimate(asset, window.samples, window.phases),
+    estimate = judge_estimate(asset, health, estimator_.estimate(asset, window.samples, window.phases, stop),
                               options_.largest_condition_std);
     estimate.accepted_discrepancy = model.discrepancy_id();
     return estimate;

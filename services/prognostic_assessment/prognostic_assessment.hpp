@@ -46,6 +46,7 @@ class PrognosticAssessment final : public Layer {
   [[nodiscard]] std::span<const Topic> outputs() const override;
   void restore(const Message& own_output) override;
   [[nodiscard]] Conclusion receive(const Message& input) override;
+  [[nodiscard]] Conclusion receive_until(const Message& input, const std::stop_token& stop) override;
   [[nodiscard]] std::size_t held() const override;
   [[nodiscard]] Conclusion tick(UtcTime now) override;
 
@@ -65,9 +66,10 @@ class PrognosticAssessment final : public Layer {
         in_charge_(std::move(in_charge)) {}
 
   template <class Input>
-  [[nodiscard]] Conclusion join(const Input& input, Halves<Input> Pending::*halves);
+  [[nodiscard]] Conclusion join(const Input& input, Halves<Input> Pending::*halves, const std::stop_token& stop);
   void learn_replacements(const std::string& asset_id, const Header& header);
-  [[nodiscard]] std::vector<Message> conclude(const HealthReport& health, const TestWindow& window);
+  [[nodiscard]] std::vector<Message> conclude(const HealthReport& health, const TestWindow& window,
+                                              const std::stop_token& stop);
   void remember(const LeakageEstimate& estimate);
   void meet(const std::string& asset_id, const std::string& pst_id);
   [[nodiscard]] Conclusion replaced(const MaintenanceEvent& event);
@@ -75,7 +77,8 @@ class PrognosticAssessment final : public Layer {
   void apply(const std::string& asset_id, const Retraction& retraction);
   [[nodiscard]] Conclusion retracted(const MaintenanceEvent& event);
   [[nodiscard]] const AcceptedModel& accepted(const std::string& asset_id) const;
-  [[nodiscard]] LeakageEstimate estimate(const HealthReport& health, const TestWindow& window) const;
+  [[nodiscard]] LeakageEstimate estimate(const HealthReport& health, const TestWindow& window,
+                                         const std::stop_token& stop) const;
   /// Also marks `estimate` when it stands alone.
   [[nodiscard]] RemainingLife remaining_life(LeakageEstimate& estimate) const;
   [[nodiscard]] std::vector<forecast::FailureHorizon> campaigns(const AssetConfig& asset) const;

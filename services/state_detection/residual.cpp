@@ -37,14 +37,17 @@ AssetConfig with_value(AssetConfig asset, const std::string& parameter, double v
 
 /// The value of what wears with which the simulation comes nearest to the recording; nothing for an asset whose
 /// condition is not described.
-std::optional<double> nearest_wear(const AssetConfig& asset, const TimeSeries& recorded, const Simulator& simulator) {
+std::optional<double> nearest_wear(const AssetConfig& asset, const TimeSeries& recorded, const Simulator& simulator,
+                                   const std::stop_token& cancel) {
   if (!asset.condition || !asset.parameters.contains(asset.condition->parameter)) return std::nullopt;
   const bool positive = asset.condition->is_positive();
   const auto value_at = [&](double at) { return positive ? std::exp(at) : at; };
   const auto misfit = [&](double at) {
+    constexpr double kWorst = std::numeric_limits<double>::max();
+    if (cancel.stop_requested()) return kWorst;  // the search cannot be left
     const AssetConfig aged = with_value(asset, asset.condition->parameter, value_at(at));
-    const Result<TimeSeries> simulated = simulator.simulate(aged, recorded);
-    if (!simulated) return std::numeric_limits<double>::max();
+    const Result<TimeSeries> simulated = simulator.simulate(aged, recorded, cancel);
+    if (!simulated) return kWorst;
     double sum = 0.0;
     for (const ResidualSummary& one : summarise_residuals(asset, recorded, *simulated, Reference::own_baseline))
       sum += one.noise_normalised_rms * one.noise_normalised_rms;
@@ -72,9 +75,10 @@ std::optional<AssetConfig> as_worn(const AssetConfig& asset, std::optional<doubl
 
 /// Not asked where the seal's leakage was measured.
 std::optional<double> nearest_if_needed(const AssetConfig& asset, const TimeSeries& recorded,
-                                        std::optional<double> leakage_resistance, const Simulator& simulator) {
+                                        std::optional<double> leakage_resistance, const Simulator& simulator,
+                                        const std::stop_token& cancel) {
   if (leakage_resistance && plant_or_default(asset.model).condition) return std::nullopt;
-  return nearest_wear(asset, recorded, simulator);
+  return nearest_wear(asset, recorded, simulator, cancel);
 }
 
 }  // namespace
@@ -102,14 +106,15 @@ std::vector<ResidualSummary> summarise_residuals(const AssetConfig& asset, const
 }
 
 Result<Residuals> residuals_of(const AssetConfig& asset, const TestWindow& window,
-                               std::optional<double> leakage_resistance, const Simulator& simulator) {
+                               std::optional<double> leakage_resistance, const Simulator& simulator,
+                               const std::stop_token& cancel) {
   const TimeSeries recorded = usable_channels(window);
-  const Result<TimeSeries> nominal = simulator.simulate(asset, recorded);
+  const Result<TimeSeries> nominal = simulator.simulate(asset, recorded, cancel);
   if (!nominal) return tl::unexpected(nominal.error());
   Residuals all{.summaries = summarise_residuals(asset, recorded, *nominal, Reference::nominal_model),
-                .nearest_wear = nearest_if_needed(asset, recorded, leakage_resistance, simulator)};
+                .nearest_wear = nearest_if_needed(asset, recorded, leakage_resistance, simulator, cancel)};
   const std::optional<AssetConfig> worn = as_worn(asset, leakage_resistance, all.nearest_wear);
-  const Result<TimeSeries> own = worn ? simulator.simulate(*worn, recorded) : nominal;
+  const Result<TimeSeries> own = worn ? simulator.simulate(*worn, recorded, cancel) : nominal;
   if (!own) return tl::unexpected(own.error());
   for (ResidualSummary& summary : summarise_residuals(asset, recorded, *own, Reference::own_baseline))
     all.summaries.push_back(std::move(summary));
@@ -118,11 +123,11 @@ Result<Residuals> residuals_of(const AssetConfig& asset, const TestWindow& windo
 
 Result<std::vector<ResidualSummary>> residuals_of_accepted(const AssetConfig& accepted, const TestWindow& window,
                                                            std::optional<double> leakage_resistance,
-                                                           const Simulator& simulator) {
+                                                           const Simulator& simulator, const std::stop_token& cancel) {
   const TimeSeries recorded = usable_channels(window);
-  const std::optional<AssetConfig> worn =
-      as_worn(accepted, leakage_resistance, nearest_if_needed(accepted, recorded, leakage_resistance, simulator));
-  const Result<TimeSeries> simulated = simulator.simulate(worn.value_or(accepted), recorded);
+  const std::optional<AssetConfig> worn = as_worn(
+      accepted, leakage_resistance, nearest_if_needed(accepted, recorded, leakage_resistance, simulator, cancel));
+  const Result<TimeSeries> simulated = simulator.simulate(worn.value_or(accepted), recorded, cancel);
   if (!simulated) return tl::unexpected(simulated.error());
   return summarise_residuals(accepted, recorded, *simulated, Reference::accepted_model);
 }

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -32,12 +33,14 @@ struct Residuals {
 
 /// Both references; an Error when the test cannot be simulated.
 [[nodiscard]] Result<Residuals> residuals_of(const AssetConfig& asset, const TestWindow& window,
-                                             std::optional<double> leakage_resistance, const Simulator& simulator);
+                                             std::optional<double> leakage_resistance, const Simulator& simulator,
+                                             const std::stop_token& cancel);
 
 /// Of the model that an operator accepted, with the piston seal's resistance as measured.
 [[nodiscard]] Result<std::vector<ResidualSummary>> residuals_of_accepted(const AssetConfig& accepted,
                                                                          const TestWindow& window,
                                                                          std::optional<double> leakage_resistance,
-                                                                         const Simulator& simulator);
+                                                                         const Simulator& simulator,
+                                                                         const std::stop_token& cancel);
 
 }  // namespace sealwatch

@@ -109,7 +109,9 @@ void StateDetection::restore(const Message& own_output) {
     static_cast<void>(judge_anew(report->asset_id, state));
 }
 
-Conclusion StateDetection::receive(const Message& input) {
+Conclusion StateDetection::receive(const Message& input) { return receive_until(input, {}); }
+
+Conclusion StateDetection::receive_until(const Message& input, const std::stop_token& stop) {
   AssetState& state = state_of(asset_of(input));
   state.history.last_was_replay = header_of(input).replay;
   state.has_input = true;
@@ -122,7 +124,7 @@ Conclusion StateDetection::receive(const Message& input) {
   if (const auto* event = std::get_if<MaintenanceEvent>(&input)) state.accepted.take(*event, conclusion);
   if (const auto* found = std::get_if<ModelDiscrepancy>(&input)) state.accepted.take(*found, conclusion);
   if (const auto* acceptance = std::get_if<ModelAcceptance>(&input)) state.accepted.take(*acceptance, conclusion);
-  conclude_if_ready(state, header_of(input).pst_id, conclusion);
+  conclude_if_ready(state, header_of(input).pst_id, stop, conclusion);
   return conclusion;
 }
 
@@ -162,18 +164,19 @@ Conclusion StateDetection::retracted(const MaintenanceEvent& event, AssetState& 
   return conclusion;
 }
 
-void StateDetection::conclude_if_ready(AssetState& state, const std::string& pst_id, Conclusion& conclusion) {
+void StateDetection::conclude_if_ready(AssetState& state, const std::string& pst_id, const std::stop_token& stop,
+                                       Conclusion& conclusion) {
   if (!state.tests.has(pst_id) || !state.windows.has(pst_id)) return;
   if (!state.tests.is_here(pst_id, conclusion) || !state.windows.is_here(pst_id, conclusion)) return;
   const TestFeatures features = state.tests.take(pst_id, conclusion);
   const TestWindow window = state.windows.take(pst_id, conclusion);
-  conclude(state, features, window, conclusion);
+  conclude(state, features, window, stop, conclusion);
   conclusion.consumed.push_back(features.header.message_id);
   conclusion.consumed.push_back(window.header.message_id);
 }
 
 void StateDetection::conclude(AssetState& state, const TestFeatures& features, const TestWindow& window,
-                              Conclusion& conclusion) {
+                              const std::stop_token& stop, Conclusion& conclusion) {
   StateReport report;
   report.asset_id = features.asset_id;
   report.header = features.header;
@@ -195,7 +198,7 @@ void StateDetection::conclude(AssetState& state, const TestFeatures& features, c
   if (asset == assets_.end())
     report.verdict_reasons.push_back("asset '" + features.asset_id + "' is not in the configuration");
   else
-    judge(state, asset->second, features, window, report);
+    judge(state, asset->second, features, window, stop, report);
   report.region = state.history.worst_region();
   state.history.learn(report);
   if (!state.past.add(report))
@@ -210,7 +213,7 @@ void StateDetection::conclude(AssetState& state, const TestFeatures& features, c
 }
 
 void StateDetection::judge(AssetState& state, const AssetConfig& asset, const TestFeatures& features,
-                           const TestWindow& window, StateReport& report) const {
+                           const TestWindow& window, const std::stop_token& stop, StateReport& report) const {
   AssetHistory& history = state.history;
   std::vector<Quantity> indicators = condition_indicators(asset, features, window);
   Verdict verdict = judge_test(asset, features, window, indicators);
@@ -229,7 +232,7 @@ void StateDetection::judge(AssetState& state, const AssetConfig& asset, const Te
     report.verdict_reasons.push_back(std::move(text));
   }
   if (!is_judged(report.verdict)) return;
-  const std::optional<double> worn = add_residuals(state, asset, features, window, report);
+  const std::optional<double> worn = add_residuals(state, asset, features, window, stop, report);
   if (worn && !goes_by_leakage(asset))
     indicators.push_back({"condition", "1", asset.condition->condition(*worn), false, 0.0});
   report.judgements = judge_indicators(asset, indicators, history.baseline());
@@ -243,19 +246,19 @@ void StateDetection::judge(AssetState& state, const AssetConfig& asset, const Te
 
 std::optional<double> StateDetection::add_residuals(const AssetState& state, const AssetConfig& asset,
                                                     const TestFeatures& features, const TestWindow& window,
-                                                    StateReport& report) const {
+                                                    const std::stop_token& stop, StateReport& report) const {
   if (simulator_ == nullptr) return std::nullopt;
   const std::optional<double> leakage = feature_of(features, "leakage_resistance");
   const auto cannot = [&](const char* what, const Error& why) {
     report.verdict_reasons.push_back(what + why.describe());
   };
-  Result<Residuals> residuals = residuals_of(asset, window, leakage, *simulator_);
+  Result<Residuals> residuals = residuals_of(asset, window, leakage, *simulator_, stop);
   if (residuals)
     report.residuals = std::move(residuals->summaries);
   else
     cannot("no simulation residual: ", residuals.error());
   if (state.accepted.in_force()) {
-    const auto accepted = residuals_of_accepted(state.accepted.applied_to(asset), window, leakage, *simulator_);
+    const auto accepted = residuals_of_accepted(state.accepted.applied_to(asset), window, leakage, *simulator_, stop);
     if (accepted)
       report.residuals.insert(report.residuals.end(), accepted->begin(), accepted->end());
     else

@@ -48,6 +48,7 @@ class StateDetection final : public Layer {
   [[nodiscard]] std::span<const Topic> outputs() const override;
   void restore(const Message& own_output) override;
   [[nodiscard]] Conclusion receive(const Message& input) override;
+  [[nodiscard]] Conclusion receive_until(const Message& input, const std::stop_token& stop) override;
   [[nodiscard]] Conclusion tick(UtcTime now) override;
   [[nodiscard]] std::size_t held() const override;
 
@@ -64,16 +65,18 @@ class StateDetection final : public Layer {
   };
 
   [[nodiscard]] AssetState& state_of(const std::string& asset_id);
-  void conclude_if_ready(AssetState& state, const std::string& pst_id, Conclusion& conclusion);
-  void conclude(AssetState& state, const TestFeatures& features, const TestWindow& window, Conclusion& conclusion);
+  void conclude_if_ready(AssetState& state, const std::string& pst_id, const std::stop_token& stop,
+                         Conclusion& conclusion);
+  void conclude(AssetState& state, const TestFeatures& features, const TestWindow& window, const std::stop_token& stop,
+                Conclusion& conclusion);
   [[nodiscard]] Conclusion retracted(const MaintenanceEvent& event, AssetState& state);
   /// Makes the history what the tests that count make of it, and returns the last of these.
   std::optional<StateReport> judge_anew(const std::string& asset_id, AssetState& state) const;
   void judge(AssetState& state, const AssetConfig& asset, const TestFeatures& features, const TestWindow& window,
-             StateReport& report) const;
+             const std::stop_token& stop, StateReport& report) const;
   /// Value of what wears with which the simulation comes nearest to the recording, where it was asked.
   std::optional<double> add_residuals(const AssetState& state, const AssetConfig& asset, const TestFeatures& features,
-                                      const TestWindow& window, StateReport& report) const;
+                                      const TestWindow& window, const std::stop_token& stop, StateReport& report) const;
   void note_lateness(const AssetState& state, const AssetConfig& asset, StateReport& report) const;
   /// Whether tests are due though none was live: its sender may never have worked, whatever history was played back.
   [[nodiscard]] bool waits_for_first_live_test(const std::string& asset_id, const AssetState& state) const;

@@ -82,6 +82,12 @@ class Layer {
   }
   /// Takes one input; never fails: bad content becomes a message that says so.
   [[nodiscard]] virtual Conclusion receive(const Message& input) = 0;
+  /// The same, as runners call it, for layers that may compute for long before they return: asked to stop, it ends soon,
+  /// whatever it then returns or raises, and the object is thrown away.
+  [[nodiscard]] virtual Conclusion receive_until(const Message& input, const std::stop_token& stop) {
+    (void)stop;
+    return receive(input);
+  }
   /// How many of its unconsumed inputs it keeps as its memory: they wait for nothing.
   [[nodiscard]] virtual std::size_t held() const { return 0; }
   /// Lets time pass in live operation (never called in replay or offline): tests that became overdue, tests whose end

@@ -81,7 +81,7 @@ Result<std::vector<TimeSeries>> simulate(const AssetConfig& asset, const std::ve
                                          const std::vector<std::string>& names) {
   std::vector<TimeSeries> simulated;
   for (std::size_t k = 0; k < recordings.size(); ++k) {
-    auto one = ModelSimulator().simulate(asset, recordings[k].samples);
+    auto one = ModelSimulator().simulate(asset, recordings[k].samples, {});
     if (!one) {
       one.error().file = names[k];
       return fail(one.error());

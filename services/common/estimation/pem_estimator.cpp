@@ -25,12 +25,16 @@ class PemEstimator final : public Estimator {
       : actuator_(std::move(actuator)), cylinder_(cylinder) {}
 
   [[nodiscard]] std::vector<FitReport> estimate(const AssetConfig& asset, const TimeSeries& samples,
-                                                std::span<const Phase> phases) const override {
+                                                std::span<const Phase> phases,
+                                                const std::stop_token& cancel) const override {
+    const Deadline deadline(cancel);
+    ActuatorFitOptions actuator = actuator_;
+    actuator.deadline = &deadline;
     std::vector<FitReport> fits;
     if (auto why = why_not_simulated(samples.time_s))
       fits.push_back(cannot_fit(asset.model, std::move(*why)));
     else
-      fits.push_back(fit_actuator(asset, {&samples, 1}, actuator_).report);
+      fits.push_back(fit_actuator(asset, {&samples, 1}, actuator).report);
     if (has_cylinder_circuit(asset)) fits.push_back(fit_cylinder_circuit(asset, samples, phases, cylinder_));
     // Driven by a measured flow the whole-record simulation takes the flow's own noise for the model's error: the
     // circuit's filter knows better.

@@ -119,12 +119,15 @@ Result<ModelValues> fit_operating_point(const PlantSimulation& simulation, const
   return values;
 }
 
-Result<TimeSeries> ModelSimulator::simulate(const AssetConfig& asset, const TimeSeries& recorded) const {
+Result<TimeSeries> ModelSimulator::simulate(const AssetConfig& asset, const TimeSeries& recorded,
+                                            const std::stop_token& cancel) const {
+  const Deadline deadline(cancel);
+  const SimulationOptions options{.deadline = &deadline};
   const auto simulation = PlantSimulation::create(asset, recorded);
   if (!simulation) return fail(simulation.error());
-  const auto values = fit_operating_point(**simulation, asset);
+  const auto values = fit_operating_point(**simulation, asset, options);
   if (!values) return fail(values.error());
-  const auto outputs = (*simulation)->run(*values, {});
+  const auto outputs = (*simulation)->run(*values, {}, options);
   if (!outputs) return fail(outputs.error());
   TimeSeries predicted{recorded.time_s, {}, recorded.input_hold};
   for (std::size_t c = 0; c < (*simulation)->channels().size(); ++c) {

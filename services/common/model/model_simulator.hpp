@@ -9,7 +9,8 @@ namespace sealwatch {
 
 class ModelSimulator final : public Simulator {
  public:
-  [[nodiscard]] Result<TimeSeries> simulate(const AssetConfig& asset, const TimeSeries& recorded) const override;
+  [[nodiscard]] Result<TimeSeries> simulate(const AssetConfig& asset, const TimeSeries& recorded,
+                                            const std::stop_token& cancel) const override;
 };
 
 /// Load factor and slow initial states that fit the recording best in the sense of least squares over the sensors'

@@ -133,7 +133,7 @@ void AssetLanes::fail_without_a_try(const std::string& asset_id, const Input& in
 void AssetLanes::receive(const std::string& asset_id, Lane& lane) {
   const auto input = lane.receiving->message;
   compute(asset_id, lane, input, false,
-          [layer = lane.layer, input](const std::stop_token&) { return layer->receive(*input); });
+          [layer = lane.layer, input](const std::stop_token& stop) { return layer->receive_until(*input, stop); });
 }
 
 void AssetLanes::do_later(const std::string& asset_id, Lane& lane) {

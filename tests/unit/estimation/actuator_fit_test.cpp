@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <random>
+#include <thread>
 
 #include "sealwatch/core/test_limits.hpp"
 #include "sealwatch/estimation/pem_estimator.hpp"
@@ -266,14 +267,34 @@ TEST(PemEstimator, PutsTheFitToTrustFirst) {
   const auto estimator = make_pem_estimator();
   TimeSeries samples = bench_recording(1.0);
   const std::vector<Phase> phases = {{PhaseKind::hold, 6.0, 8.3}};
-  std::vector<FitReport> fits = estimator->estimate(nominal_asset(), samples, phases);
+  std::vector<FitReport> fits = estimator->estimate(nominal_asset(), samples, phases, {});
   ASSERT_EQ(fits.size(), 2U);
   EXPECT_EQ(fits[0].model, "eha");
   EXPECT_EQ(fits[1].model, "cylinder_circuit");
   EXPECT_TRUE(fits[0].admissible && fits[1].admissible);
   std::erase_if(samples.channels, [](const Series& channel) { return channel.name == "motor_voltage"; });
-  fits = estimator->estimate(nominal_asset(), samples, phases);
+  fits = estimator->estimate(nominal_asset(), samples, phases, {});
   EXPECT_EQ(fits[0].model, "cylinder_circuit");
+}
+
+/// Of six hours, which take a minute or more.
+TEST(PemEstimator, EndsSoonWhenItIsCalledOff) {
+  TimeSeries samples = bench_recording(1.0, 500.0);
+  const double apart_s = 6.0 * 3600.0 / static_cast<double>(samples.time_s.size());
+  for (std::size_t row = 0; row < samples.time_s.size(); ++row)
+    samples.time_s[row] = apart_s * static_cast<double>(row);
+  std::stop_source stop;
+  const std::jthread caller([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    stop.request_stop();
+  });
+  const auto begin = std::chrono::steady_clock::now();
+  const std::vector<FitReport> fits = make_pem_estimator()->estimate(nominal_asset(), samples, {}, stop.get_token());
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  const auto whole = std::ranges::find(fits, "eha", &FitReport::model);
+  ASSERT_NE(whole, fits.end());
+  EXPECT_FALSE(whole->converged) << "after " << took.count() << " s";
+  EXPECT_LT(took.count(), 10.0) << "a busy machine";
 }
 
 /// The same rows as those of a test that lasts nine hours: a simulation would take most of the estimate's time.
@@ -283,7 +304,7 @@ TEST(PemEstimator, DoesNotSimulateATestOfManyHours) {
   for (std::size_t row = 0; row < samples.time_s.size(); ++row)
     samples.time_s[row] = kApart_s * static_cast<double>(row);
   ASSERT_TRUE(too_long_to_simulate(samples.time_s.back(), longest_step_s(samples.time_s)));
-  const std::vector<FitReport> fits = make_pem_estimator()->estimate(nominal_asset(), samples, {});
+  const std::vector<FitReport> fits = make_pem_estimator()->estimate(nominal_asset(), samples, {}, {});
   const auto whole = std::ranges::find(fits, "eha", &FitReport::model);
   ASSERT_NE(whole, fits.end());
   EXPECT_FALSE(whole->admissible);

@@ -39,7 +39,7 @@ TEST(Recordings, OfTheConsistentBenchAreReproducedToTheNoise) {
   constexpr double kScatter = 0.05;  // four standard deviations of the rms of 3100 samples of unit noise
   for (const char* name : {"fit_0", "fit_1", "fit_2", "fit_3", "holdout_0", "holdout_1"}) {
     const TimeSeries recorded = read_recording(folder / (std::string(name) + ".csv"));
-    const auto predicted = ModelSimulator().simulate(asset, recorded);
+    const auto predicted = ModelSimulator().simulate(asset, recorded, {});
     ASSERT_TRUE(predicted) << predicted.error().describe();
     ASSERT_EQ(predicted->channels.size(), 7u);
     for (const Series& channel : predicted->channels)
@@ -59,7 +59,7 @@ TEST(Recordings, OfTheSwitchedBenchAreSimulatedWithTheAuthorsParameters) {
     for (int stroke = 1; stroke <= 4; ++stroke) {
       const std::string name = "oct21_load" + std::to_string(load) + "_stroke" + std::to_string(stroke);
       const TimeSeries recorded = read_recording(folder / (name + ".csv"));
-      const auto predicted = ModelSimulator().simulate(asset, recorded);
+      const auto predicted = ModelSimulator().simulate(asset, recorded, {});
       ASSERT_TRUE(predicted) << name << ": " << predicted.error().describe();
       ASSERT_EQ(predicted->channels.size(), 5u);
       std::string line = "| " + name;

@@ -6,6 +6,7 @@
 
 #include <numbers>
 #include <random>
+#include <thread>
 
 #include "services/common/model/model_simulator.hpp"
 #include "services/common/model/recorded_input.hpp"
@@ -261,7 +262,7 @@ TEST(Simulation, TakesTheFlowWhereTheVoltageIsNotRecorded) {
     const auto simulated = outputs.values.col(column(*whole, series.name));
     series.values.assign(simulated.begin(), simulated.end());
   }
-  const auto predicted = ModelSimulator().simulate(asset, recorded);
+  const auto predicted = ModelSimulator().simulate(asset, recorded, {});
   ASSERT_TRUE(predicted) << predicted.error().describe();
   ASSERT_EQ(predicted->channels.size(), 3u) << "pressure_a, position, velocity; pressure_b drives";
   // The flow sensor lags by 50 ms, which moves the corners at 1.33 mm/s; between them both agree.
@@ -309,7 +310,7 @@ TEST(ModelSimulator, EstimatesTheLoadAndTheInitialStateOnly) {
   ASSERT_TRUE(fitted) << fitted.error().describe();
   EXPECT_NEAR(fitted->load_factor, 0.12, 1e-4);
   EXPECT_EQ(fitted->parameters, values.parameters);
-  const auto predicted = ModelSimulator().simulate(asset, recorded);
+  const auto predicted = ModelSimulator().simulate(asset, recorded, {});
   ASSERT_TRUE(predicted) << predicted.error().describe();
   ASSERT_EQ(predicted->channels.size(), truth->channels().size());
   constexpr double kNoiseFloor = 0.06;  // the noise's own scatter over 3100 samples is 0.013, four estimates on top
@@ -320,6 +321,23 @@ TEST(ModelSimulator, EstimatesTheLoadAndTheInitialStateOnly) {
     const double rms = std::sqrt(sum / static_cast<double>(channel.values.size()));
     EXPECT_NEAR(rms / asset.sensors.at(channel.name).noise_std, 1.0, kNoiseFloor) << channel.name;
   }
+}
+
+/// A log of twelve hours takes a minute or more: its service was ended for it, and started again.
+TEST(ModelSimulator, EndsSoonWhenItIsCalledOff) {
+  const AssetConfig asset = nominal_asset("eha");
+  TimeSeries recorded = standard_pst(asset, 200.0, 54.0);
+  for (std::size_t row = 0; row < recorded.time_s.size(); ++row) recorded.time_s[row] = 4.0 * static_cast<double>(row);
+  std::stop_source stop;
+  const std::jthread caller([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    stop.request_stop();
+  });
+  const auto begin = std::chrono::steady_clock::now();
+  const auto predicted = ModelSimulator().simulate(asset, recorded, stop.get_token());
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  ASSERT_FALSE(predicted) << "after " << took.count() << " s";
+  EXPECT_NE(predicted.error().describe().find("its time was up"), std::string::npos) << predicted.error().describe();
 }
 
 }  // namespace

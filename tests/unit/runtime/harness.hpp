@@ -73,9 +73,10 @@ class MortalLayer final : public Layer {
   std::span<const Topic> outputs() const override { return layer_->outputs(); }
   void restore(const Message& own) override { layer_->restore(own); }
   bool tells_all(const Message& last_of_test) const override { return layer_->tells_all(last_of_test); }
-  Conclusion receive(const Message& input) override {
+  Conclusion receive(const Message& input) override { return receive_until(input, {}); }
+  Conclusion receive_until(const Message& input, const std::stop_token& stop) override {
     fate_.step();  // taken, before the conclusion
-    Conclusion conclusion = layer_->receive(input);
+    Conclusion conclusion = layer_->receive_until(input, stop);
     fate_.step();  // concluded, not journaled
     return conclusion;
   }

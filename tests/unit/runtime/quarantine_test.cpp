@@ -31,26 +31,29 @@ class FragileLayer final : public Layer {
   [[nodiscard]] std::span<const Topic> inputs() const override { return kInputs; }
   [[nodiscard]] std::span<const Topic> outputs() const override { return kOutputs; }
   void restore(const Message& /*own*/) override { ++tests_; }
-  [[nodiscard]] Conclusion receive(const Message& input) override {
+  [[nodiscard]] Conclusion receive(const Message& input) override { return receive_until(input, {}); }
+  [[nodiscard]] Conclusion receive_until(const Message& input, const std::stop_token& stop) override {
     const auto& test = std::get<TestFeatures>(input);
     ++tests_;  // also of a test that fails: a layer that raised is in no state that may go on
-    suffer(test.recording_id);
+    suffer(test.recording_id, stop);
     StateReport report;
     report.asset_id = test.asset_id;
     report.header = header("state_report/" + test.header.pst_id, test.header.pst_id);
     report.verdict_reasons = {"test " + std::to_string(tests_)};
     const Conclusion conclusion{{report}, {test.header.message_id}};
     if (!test.recording_id.starts_with("later ")) return conclusion;
-    return {{}, {}, [conclusion, what = test.recording_id.substr(6)](const std::stop_token& stop) {
-              if (what == "waits")
-                while (!stop.stop_requested()) std::this_thread::sleep_for(milliseconds(1));
-              suffer(what);
+    return {{}, {}, [conclusion, what = test.recording_id.substr(6)](const std::stop_token& later_stop) {
+              suffer(what, later_stop);
               return conclusion;
             }};
   }
 
  private:
-  static void suffer(const std::string& what) {
+  static void suffer(const std::string& what, const std::stop_token& stop) {
+    if (what == "waits")
+      while (!stop.stop_requested()) std::this_thread::sleep_for(milliseconds(1));
+    if (what == "computes")
+      for (volatile bool on = true; on;) on = !stop.stop_requested();
     if (what == "raises") throw std::runtime_error("no such phase");
     if (what == "raises no exception") throw 7;
     if (what == "takes all memory") throw std::bad_alloc();
@@ -118,8 +121,8 @@ class QuarantineTest : public ::testing::TestWithParam<const char*> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Fates, QuarantineTest,
-                         ::testing::Values("raises", "raises no exception", "takes all memory", "later raises",
-                                           "later waits", "later takes all memory"),
+                         ::testing::Values("raises", "raises no exception", "takes all memory", "waits", "computes",
+                                           "later raises", "later waits", "later computes", "later takes all memory"),
                          [](const auto& fate) {
                            std::string name = fate.param;
                            std::ranges::replace(name, ' ', '_');

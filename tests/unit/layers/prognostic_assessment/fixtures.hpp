@@ -42,8 +42,8 @@ inline FitReport fit(const std::string& model, double resistance, double std_err
 /// Finds R_CL, its standard error and the verdict in the window's samples, where `TestCase` put them.
 class ScriptedEstimator final : public Estimator {
  public:
-  std::vector<FitReport> estimate(const AssetConfig&, const TimeSeries& samples,
-                                  std::span<const Phase>) const override {
+  std::vector<FitReport> estimate(const AssetConfig&, const TimeSeries& samples, std::span<const Phase>,
+                                  const std::stop_token&) const override {
     if (samples.channels.empty()) return {};
     const std::vector<double>& told = samples.channels.front().values;
     return {fit("eha", told[0], told[1], told[2] > 0.0)};

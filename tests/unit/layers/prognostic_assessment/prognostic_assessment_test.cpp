@@ -359,10 +359,33 @@ TEST_F(PrognosticAssessmentTest, DecisionTableHasEveryCampaignAndCostsWhereTheSi
   EXPECT_TRUE(with[1].cheapest) << "the last campaign that is safe: now wastes 40 months of life";
 }
 
+/// Remembers whether it was called off.
+class Obedient final : public Estimator {
+ public:
+  std::vector<FitReport> estimate(const AssetConfig&, const TimeSeries&, std::span<const Phase>,
+                                  const std::stop_token& cancel) const override {
+    called_off = cancel.stop_requested();
+    return {};
+  }
+  mutable bool called_off = false;
+};
+
+TEST_F(PrognosticAssessmentTest, TheEstimateOfATestCanBeCalledOff) {
+  const Obedient estimator;
+  const auto layer = PrognosticAssessment::make(configuration_, estimator).value();
+  const TestCase test;
+  std::stop_source stop;
+  (void)layer->receive_until(test.health(), stop.get_token());
+  stop.request_stop();
+  (void)layer->receive_until(test.window(), stop.get_token());
+  EXPECT_TRUE(estimator.called_off);
+}
+
 /// With the accepted friction the estimator finds half the resistance.
 class EstimatorOfPhysics final : public Estimator {
  public:
-  std::vector<FitReport> estimate(const AssetConfig& asset, const TimeSeries&, std::span<const Phase>) const override {
+  std::vector<FitReport> estimate(const AssetConfig& asset, const TimeSeries&, std::span<const Phase>,
+                                  const std::stop_token&) const override {
     return {fit("eha", asset.physics.empty() ? 2.0e13 : 1.0e13, 1e10)};
   }
 };

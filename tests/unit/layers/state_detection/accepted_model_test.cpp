@@ -12,7 +12,8 @@ namespace {
 /// The recording, off by 20 noises for the asset's file and by 1 with the accepted friction.
 class TwoModels final : public Simulator {
  public:
-  [[nodiscard]] Result<TimeSeries> simulate(const AssetConfig& asset, const TimeSeries& recorded) const override {
+  [[nodiscard]] Result<TimeSeries> simulate(const AssetConfig& asset, const TimeSeries& recorded,
+                                            const std::stop_token& /*cancel*/) const override {
     TimeSeries simulated = recorded;
     std::erase_if(simulated.channels, [](const Series& series) { return series.name == "motor_voltage"; });
     for (Series& series : simulated.channels)

@@ -14,7 +14,8 @@ class FakeSimulator final : public Simulator {
   FakeSimulator(double noises, double per_seal, double true_resistance)
       : noises_(noises), per_seal_(per_seal), true_resistance_(true_resistance) {}
 
-  [[nodiscard]] Result<TimeSeries> simulate(const AssetConfig& asset, const TimeSeries& recorded) const override {
+  [[nodiscard]] Result<TimeSeries> simulate(const AssetConfig& asset, const TimeSeries& recorded,
+                                            const std::stop_token& /*cancel*/) const override {
     if (!recorded.has("motor_voltage")) return fail("motor_voltage is not recorded");
     const double seal = std::abs(asset.parameter("R_CL") / true_resistance_ - 1.0);
     TimeSeries simulated = recorded;

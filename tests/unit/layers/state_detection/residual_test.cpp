@@ -28,7 +28,7 @@ TEST(Residual, AgeingOfTheSealIsTakenOutOfTheOwnBaseline) {
   worn.theta = 0.65;
   const double truth = asset.condition->value(0.65);
   const synthetic::Test test = synthetic::make(worn, {});
-  const auto summaries = residuals_of(asset, test.window, truth, FakeSimulator(1.0, 50.0, truth));
+  const auto summaries = residuals_of(asset, test.window, truth, FakeSimulator(1.0, 50.0, truth), {});
   ASSERT_TRUE(summaries);
   ASSERT_EQ(summaries->summaries.size(), 14U);  // seven outputs, two references
   for (const ResidualSummary& summary : summaries->summaries) {
@@ -46,7 +46,7 @@ TEST(Residual, AgeingIsTakenOutWhereNoFlowTellsIt) {
   const synthetic::Test test = synthetic::make({}, circumstances);
   for (const double theta : {0.97, 0.8, 0.61}) {
     const FakeSimulator simulator(1.0, 50.0, asset.condition->value(theta));
-    const auto summaries = residuals_of(asset, test.window, std::nullopt, simulator);
+    const auto summaries = residuals_of(asset, test.window, std::nullopt, simulator, {});
     ASSERT_TRUE(summaries);
     constexpr double kSearched = 2e-3;  // 16 bits of the logarithm, and what seven channels' noise shows
     ASSERT_TRUE(summaries->nearest_wear);
@@ -62,16 +62,39 @@ TEST(Residual, FailedChannelsStayOut) {
   synthetic::Circumstances circumstances;
   circumstances.failed_channel = "flow";
   const synthetic::Test test = synthetic::make({}, circumstances);
-  const auto summaries = residuals_of(synthetic::asset(), test.window, std::nullopt, FakeSimulator(1, 0, 1e13));
+  const auto summaries = residuals_of(synthetic::asset(), test.window, std::nullopt, FakeSimulator(1, 0, 1e13), {});
   ASSERT_TRUE(summaries);
   for (const ResidualSummary& summary : summaries->summaries) EXPECT_NE(summary.channel, "flow");
+}
+
+/// Is called off during its second simulation, the first of the search for what wears.
+class CalledOff final : public Simulator {
+ public:
+  [[nodiscard]] Result<TimeSeries> simulate(const AssetConfig& asset, const TimeSeries& recorded,
+                                            const std::stop_token& cancel) const override {
+    ++simulations;
+    if (simulations == 2) stop.request_stop();
+    if (cancel.stop_requested()) return fail("it was called off");
+    return FakeSimulator(1.0, 50.0, 1e13).simulate(asset, recorded, cancel);
+  }
+  mutable std::stop_source stop;
+  mutable int simulations = 0;
+};
+
+TEST(Residual, ASearchThatIsCalledOffEnds) {
+  synthetic::Circumstances circumstances;
+  circumstances.absent_channel = "flow";
+  const synthetic::Test test = synthetic::make({}, circumstances);
+  const CalledOff simulator;
+  EXPECT_FALSE(residuals_of(synthetic::asset(), test.window, std::nullopt, simulator, simulator.stop.get_token()));
+  EXPECT_EQ(simulator.simulations, 3) << "with what was found so far, which fails at once";
 }
 
 TEST(Residual, ATestThatCannotBeSimulatedIsAnError) {
   synthetic::Circumstances circumstances;
   circumstances.absent_channel = "motor_voltage";
   const synthetic::Test test = synthetic::make({}, circumstances);
-  EXPECT_FALSE(residuals_of(synthetic::asset(), test.window, std::nullopt, FakeSimulator(1, 0, 1e13)));
+  EXPECT_FALSE(residuals_of(synthetic::asset(), test.window, std::nullopt, FakeSimulator(1, 0, 1e13), {}));
 }
 
 }  // namespace

@@ -141,6 +141,28 @@ TEST(StateDetection, OrderOfArrivalOfTheWindowDoesNotMatter) {
   EXPECT_EQ(found, expected);
 }
 
+/// Remembers whether it was called off.
+class Obedient final : public Simulator {
+ public:
+  [[nodiscard]] Result<TimeSeries> simulate(const AssetConfig& /*asset*/, const TimeSeries& /*recorded*/,
+                                            const std::stop_token& cancel) const override {
+    called_off = cancel.stop_requested();
+    return fail("nothing is simulated here");
+  }
+  mutable bool called_off = false;
+};
+
+TEST(StateDetection, TheSimulationsOfATestCanBeCalledOff) {
+  const auto simulator = std::make_shared<const Obedient>();
+  StateDetection detection(std::vector<AssetConfig>{synthetic::asset("A1")}, simulator);
+  const synthetic::Test made = synthetic::make({}, {});
+  std::stop_source stop;
+  (void)detection.receive_until(made.features, stop.get_token());
+  stop.request_stop();
+  (void)detection.receive_until(made.window, stop.get_token());
+  EXPECT_TRUE(simulator->called_off);
+}
+
 TEST(StateDetection, ATestWhoseOtherHalfNeverComesHoldsUpNoLaterOne) {
   Journal undisturbed, attacked;
   StateDetection one = layer(), other = layer();

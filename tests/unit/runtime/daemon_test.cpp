@@ -40,7 +40,7 @@ class ServiceManager {
     address.sun_family = AF_UNIX;
     path_.copy(address.sun_path, sizeof address.sun_path - 1);
     EXPECT_EQ(::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-    const timeval patience{10, 0};
+    const timeval patience{60, 0};
     ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
     ::setenv("NOTIFY_SOCKET", path_.c_str(), 1);
   }
@@ -50,7 +50,7 @@ class ServiceManager {
   }
   ServiceManager(const ServiceManager&) = delete;
   ServiceManager& operator=(const ServiceManager&) = delete;
-  /// Waits until `state` is notified; false after ten seconds of silence.
+  /// Waits until `state` is notified; false after a minute of silence.
   bool heard(const std::string& state) {
     char text[256];
     for (;;) {

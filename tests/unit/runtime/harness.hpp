@@ -196,15 +196,22 @@ class Feeder {
   std::uint64_t received_ = 0;
 };
 
-/// Steps until `done`, for at most `limit`; false when it never was.
+/// Steps until `done`, for at most `limit`, which only a failure waits for; false when it never was.
 inline bool step_until(const std::function<bool()>& done, const std::function<void()>& step,
-                       std::chrono::seconds limit = std::chrono::seconds(10)) {
+                       std::chrono::seconds limit = std::chrono::seconds(60)) {
   const auto deadline = std::chrono::steady_clock::now() + limit;
   while (!done()) {
     if (std::chrono::steady_clock::now() > deadline) return false;
     step();
   }
   return true;
+}
+
+/// Steps for so long and once more: what is done each second is done then, however rarely a busy machine lets it step.
+inline void step_for(std::chrono::milliseconds time, const std::function<void()>& step) {
+  const auto end = std::chrono::steady_clock::now() + time;
+  while (std::chrono::steady_clock::now() < end) step();
+  step();
 }
 
 }  // namespace sealwatch::testing

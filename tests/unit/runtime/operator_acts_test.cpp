@@ -400,9 +400,7 @@ class LostJournal : public ActsTest {
   void SetUp() override { ASSERT_TRUE(operator_.subscribe_service_topics()); }
   void hear(Process& process, const ServiceStatus& status) {
     EXPECT_TRUE(operator_.publish(status));
-    const auto end =
-        std::chrono::steady_clock::now() + std::chrono::milliseconds(1100);  // acts are looked at each second
-    while (std::chrono::steady_clock::now() < end) process.step();
+    step_for(std::chrono::milliseconds(1100), [&] { process.step(); });  // acts are looked at each second
   }
   /// Texts of the alarms of the last heartbeat.
   std::vector<std::string> alarms() {

@@ -57,15 +57,16 @@ class UnknownAssets : public ::testing::Test {
         last_ = *status;
   }
   /// Bytes in use, but for what the network itself keeps for late subscribers: the last message of every asset.
-  std::size_t memory() {
-    const std::size_t before = ::mallinfo2().uordblks;
+  /// Below zero where more was given back meanwhile than this takes.
+  std::ptrdiff_t memory() {
+    const auto before = static_cast<std::ptrdiff_t>(::mallinfo2().uordblks);
     auto alike = std::make_shared<InMemoryNetwork>();
     InMemoryBus sender(alike);
     for (std::uint64_t k = 1; k <= sent_; ++k) {
       const std::string asset_id = "invented-" + std::to_string(k);
       EXPECT_TRUE(sender.publish(Message(test_of(asset_id, asset_id + "/" + std::to_string(k), k))));
     }
-    return before - (::mallinfo2().uordblks - before);
+    return before - (static_cast<std::ptrdiff_t>(::mallinfo2().uordblks) - before);
   }
   static std::size_t outputs_of(Process& process, const std::string& asset_id) {
     std::size_t count = 0;
@@ -83,7 +84,7 @@ class UnknownAssets : public ::testing::Test {
 
 TEST_F(UnknownAssets, AreTakenUpToABoundAndTheOthersRefusedWithOneAlarm) {
   const auto service = process();
-  std::size_t halfway = 0;
+  std::ptrdiff_t halfway = 0;
   for (int k = 0; k < kAssets; ++k) {
     send("invented-" + std::to_string(k));
     if (k % kPiece != 0) continue;

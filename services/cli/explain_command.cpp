@@ -164,6 +164,14 @@ void print_bounds(const Explanation& explanation) {
   if (!text.empty()) std::printf("\n  %s\n", wrapped("at a bound of their range: " + text, kWidth, 4).c_str());
 }
 
+/// With the power of ten that `other` is shown with, as the two are compared.
+std::string readable_beside(double value, double other, const std::string& unit) {
+  const text::DisplayUnit display = text::display_unit(unit, other);
+  const double shown = value * display.factor, size = std::abs(shown);
+  if (!display.text.starts_with("10") || size < 1e-2 || size >= 1e5) return text::readable(value, unit);
+  return text::number_text(shown).append("·").append(display.text);
+}
+
 /// Where nothing was found, what the fit came to beside what the asset file has.
 void print_estimates(const Explanation& explanation) {
   constexpr double kShown = 0.02;  // of the asset file's value
@@ -173,7 +181,7 @@ void print_estimates(const Explanation& explanation) {
     if (!told || !(std::abs(shift.after - shift.datasheet) > kShown * std::abs(shift.datasheet))) continue;
     text::add_to_list(text,
                       shift.name + " " + text::readable_with_error(shift.after, shift.after_std, shift.unit) +
-                          " (asset file " + text::readable(shift.datasheet, shift.unit) + ")",
+                          " (asset file " + readable_beside(shift.datasheet, shift.after, shift.unit) + ")",
                       "; ");
   }
   if (!text.empty()) std::printf("\n  %s\n", wrapped("fitted: " + text, kWidth, 4).c_str());

@@ -103,7 +103,7 @@ std::string content(const RemainingLife& m) {
 std::string content(const PstRequest& m) { return "test due " + date(m.due_time_ns) + ": " + m.reason; }
 std::string content(const Advisory& m) {
   std::string text = upper(name_of(m.priority)) + " " + text::in_words(name_of(m.action));
-  if (m.latest_by_known) text += " by " + date(m.latest_by_ns);
+  if (m.latest_by_known) text += ", latest by " + date(m.latest_by_ns);
   if (m.state != AdvisoryState::active) text += " [" + std::string(name_of(m.state)) + "]";
   return text + ": " + m.recommendation;
 }

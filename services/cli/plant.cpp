@@ -40,7 +40,7 @@ void print_plant(const std::string& file, const ReadPlant& read) {
   rows.clear();
   for (std::size_t k = 0; k < read.text.states.size(); ++k) {
     const equations::TextState& state = read.text.states[k];
-    const char* own = state.settles ? "settles" : state.own ? "each recording's own" : "starts there";
+    const char* own = state.settles ? "settles" : state.own ? "estimated" : "fixed";
     rows.push_back({"d " + state.description.name + "/dt", "[" + rate_unit(state.description.unit) + "]",
                     "= " + (state.rate.empty() ? "as the FMU says" : state.rate),
                     "from " + text::joined(state.start, " or "), own});
@@ -78,7 +78,8 @@ void print_plant(const std::string& file, const ReadPlant& read) {
          parameter.strength ? "matters from " + here(parameter.significant) : "",
          "from " + here(parameter.min) + " to " + here(parameter.max)});
   }
-  print_table("Sizes of laws here against the 60 kN actuator's, each unit by one law that has it (law_sizes)", rows);
+  print_table("Sizes of laws: those of the 60 kN actuator times law_sizes, with one law as the example for each unit",
+              rows);
 }
 
 nlohmann::ordered_json errors_of(const std::vector<Error>& errors) {

@@ -138,7 +138,7 @@ void print_law_sizes(const PlantDescription& plant) {
   std::vector<TableRow> rows;
   for (const LawSize& size : plant.law_sizes)
     rows.push_back({std::string(size.unit), "x " + text::general(size.factor)});
-  print_table("Sizes of laws here against those of eha, by unit (law_sizes)", rows);
+  print_table("Sizes of laws: those of eha times law_sizes", rows);
 }
 
 nlohmann::ordered_json channels_as_json(const PlantDescription& plant, bool input) {

@@ -306,7 +306,7 @@ int run_replay(const ReplayOptions& options) {
   bool hangs = false;
   int result = options.offline ? replay_offline(*layers, *source, log, hangs)
                                : replay_live(options, *layers, *source, log, *speed);
-  if (const Status written = log.finish(); !written) {
+  if (const Status written = log.finish(source->failures() == 0); !written) {
     complain(written.error());
     return kBadInput;
   }

@@ -119,7 +119,7 @@ Status ReplayLog::written() {
   return {};
 }
 
-Status ReplayLog::finish() {
+Status ReplayLog::finish(bool all_read) {
   progress_.finish();
   const bool services_run = !options_.offline && !options_.with_services;
   for (const auto& [asset, view] : assets_) {
@@ -129,7 +129,7 @@ Status ReplayLog::finish() {
       std::printf("\n%s", view.screen(services_run).c_str());
   }
   if (assets_.empty()) std::printf("no test has been concluded\n");
-  if (!options_.results_directory.empty() && results_.empty() && !any_refused_)
+  if (!options_.results_directory.empty() && results_.empty() && all_read && !any_refused_)
     std::fprintf(stderr, "sealwatch: nothing was written to %s: %s\n", options_.results_directory.c_str(),
                  options_.offline ? "none of these recordings could be concluded"
                                   : "the services had concluded from all these tests before, and say nothing twice; "

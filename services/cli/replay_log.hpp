@@ -36,8 +36,8 @@ class ReplayLog {
   /// Something that happened besides, like a service that was started again.
   void remark(const std::string& text);
   /// The final screen: each asset's forecast, interval, reasons, and where to look further. An error when the files of
-  /// results are not complete.
-  [[nodiscard]] Status finish();
+  /// results are not complete. `all_read`: no recording was refused while it was read, which has been said.
+  [[nodiscard]] Status finish(bool all_read);
 
  private:
   void show_advisory(const Advisory& advisory, const Message& message);

@@ -87,12 +87,13 @@ Result<Recording> ReplaySource::read(const std::string& file) const {
   if (asset == nullptr) {
     std::vector<std::string> known;
     for (const AssetConfig& candidate : configuration_->assets) known.push_back(candidate.asset_id);
-    return fail(Error{
-        .file = file,
-        .place = "asset_id",
-        .value = *asset_id,
-        .rule = asset_id->empty() ? "names no asset" : "is not a configured asset",
-        .advice = asset_id->empty() ? "say which with --asset FILE, or in a sidecar" : suggest(*asset_id, known)});
+    return fail(Error{.file = file,
+                      .place = "asset_id",
+                      .value = *asset_id,
+                      .rule = asset_id->empty() ? "names no asset" : "is not a configured asset",
+                      .advice = asset_id->empty()
+                                    ? "say which with --asset FILE, or with asset_id in a sidecar (docs/recordings.md)"
+                                    : suggest(*asset_id, known)});
   }
   const Result<const PlantDescription*> plant = find_plant(asset->model);
   if (!plant) return fail(plant.error());

@@ -300,11 +300,11 @@ JointFit report_fit(const AssetConfig& asset, const PemProblem& problem, const P
   if (fit.recordings.size() == 1 && fit.recordings.front().load.name == "load_factor")
     fit.report.load_factor = fit.recordings.front().load.value;
   if (uncertainty.inflation > 1.0)
-    fit.report.termination +=
-        "; residuals are coloured, standard errors raised by up to " + text::in_sentence(uncertainty.inflation);
+    fit.report.termination += "; residuals are coloured, standard errors raised by a factor of up to " +
+                              text::in_sentence(uncertainty.inflation);
   if (uncertainty.by_input > 1.0)
     fit.report.termination +=
-        "; what the input does between its samples is not recorded, standard errors raised by up to " +
+        "; what the input does between its samples is not recorded, standard errors raised by a factor of up to " +
         text::in_sentence(uncertainty.by_input);
   if (const std::string names = unidentified(fit.report.parameters); !names.empty())
     fit.report.termination += "; not identifiable from these channels: " + names;

@@ -63,7 +63,9 @@ Error error_at(std::string place, std::string_view value, std::string rule, std:
 
 Result<Column> find_column(std::string_view cell, const PlantDescription& plant) {
   if (cell.find(';') != std::string_view::npos)
-    return fail(error_at({}, cell, "is not a channel of plant " + plant.name, "cells are separated by commas"));
+    return fail(error_at({}, cell, "is not a channel of plant " + plant.name,
+                         "cells are separated by commas; for a log in a layout of its own: sealwatch asset new --from "
+                         "LOG (docs/logs.md)"));
   const Result<NameAndUnit> parts = split_cell(cell);
   if (!parts) return fail(parts.error());
   if (parts->name.empty()) return fail(error_at({}, cell, "a header cell must name its channel"));

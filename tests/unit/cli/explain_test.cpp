@@ -222,7 +222,7 @@ TEST_F(ExplainCommand, WhereNothingWasFoundWhatWasFittedIsToldBesideTheAssetFile
   found_.parameters = {{.name = "A_C", .unit = "m2", .after = 6.0e-3, .after_std = 1e-6, .datasheet = 5.0e-3},
                        {.name = "R_M", .unit = "ohm", .after = 0.501, .after_std = 1e-4, .datasheet = 0.5}};
   EXPECT_EQ(run(), kOk);
-  EXPECT_THAT(out_, ContainsRegex("fitted: A_C .*asset file 0.00500 m"));
+  EXPECT_THAT(out_, ContainsRegex("fitted: A_C .*·10⁻³ m² .asset file 5.00·10⁻³ m²"));
   EXPECT_THAT(out_, Not(HasSubstr("R_M")));
 }
 

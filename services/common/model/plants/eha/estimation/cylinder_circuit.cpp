@@ -245,7 +245,7 @@ FitReport fit_signals(const AssetConfig& asset, const TimeSeries& samples, std::
     report.termination += "; steady runs and holds only, as the chambers' mean pressure is not recorded";
   if (fit.inflation > 1.0)
     report.termination +=
-        "; residuals are coloured, standard errors raised by up to " + text::in_sentence(fit.inflation);
+        "; residuals are coloured, standard errors raised by a factor of up to " + text::in_sentence(fit.inflation);
   report_parameters(fit, asset, report);
   report_channels(samples, signals, balance, fit, report);
   control_by_holds(balance, signals, transient, phases, asset, options, report);

@@ -56,6 +56,10 @@ std::string pill(const Colouring& colouring, const std::string& element, double 
       .append("</g>\n");
 }
 
+std::size_t row_of(std::size_t place) { return place / kPerRow; }
+
+std::size_t rows_for(std::size_t places) { return (places + kPerRow - 1) / kPerRow; }
+
 }  // namespace
 
 std::string chain_drawing(const Colouring& colouring) {
@@ -69,7 +73,7 @@ std::string chain_drawing(const Colouring& colouring) {
       continue;
     }
     const double x = 10.0 + kStepX * static_cast<double>(count % kPerRow);
-    const double y = 10.0 + kStepY * static_cast<double>(count / kPerRow);
+    const double y = 10.0 + kStepY * static_cast<double>(row_of(count));
     if (count % kPerRow != 0) wires += arrow(x - kStepX, y);
     const std::string shape = rectangle(x, y, kBoxHeight, 5.0);
     boxes += colouring.part({.element = element.name,
@@ -80,13 +84,12 @@ std::string chain_drawing(const Colouring& colouring) {
                              .inside = true});
     ++count;
   }
-  const double rows = static_cast<double>((count + kPerRow - 1) / kPerRow);
+  const double rows = static_cast<double>(rows_for(count));
   const double sensors_y = 10.0 + kStepY * rows;
   for (std::size_t k = 0; k < sensors.size(); ++k)
     boxes += pill(colouring, sensors[k], 10.0 + kStepX * static_cast<double>(k % kPerRow),
-                  sensors_y + kPillStepY * static_cast<double>(k / kPerRow));
-  const std::string height =
-      pixel(sensors_y + kPillStepY * static_cast<double>((sensors.size() + kPerRow - 1) / kPerRow));
+                  sensors_y + kPillStepY * static_cast<double>(row_of(k)));
+  const std::string height = pixel(sensors_y + kPillStepY * static_cast<double>(rows_for(sensors.size())));
   return std::string("<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" class=\"drawing\" width=\"960\" height=\"")
       .append(height)
       .append("\" viewBox=\"0 0 960 ")

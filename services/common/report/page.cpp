@@ -134,8 +134,10 @@ std::string inks() {
     const std::size_t dot = kOnScreen.rfind('.', at);
     const std::string ink(kOnScreen.substr(dot, at - dot));
     const std::size_t name = at + kInk.size();
-    const std::string colour = "var(--" + std::string(kOnScreen.substr(name, kOnScreen.find(')', name) - name)) + ")}";
-    rules += ink + ".stroke{stroke:" + colour + ink + ".fill," + ink + ".area{fill:" + colour + "\n";
+    std::string colour = "var(--";
+    colour.append(kOnScreen.substr(name, kOnScreen.find(')', name) - name)).append(")}");
+    rules.append(ink).append(".stroke{stroke:").append(colour);
+    rules.append(ink).append(".fill,").append(ink).append(".area{fill:").append(colour).append("\n");
   }
   return rules;
 }

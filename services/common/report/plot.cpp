@@ -222,15 +222,14 @@ std::string to_svg(const Plot& plot) {
 std::pair<std::vector<double>, std::vector<double>> thinned(const std::vector<double>& x, const std::vector<double>& y,
                                                             std::size_t columns) {
   const std::size_t size = std::min(x.size(), y.size());
-  std::pair<std::vector<double>, std::vector<double>> result;
-  auto& [across, up] = result;
+  std::vector<double> across, up;
   const auto keep = [&](std::size_t k) {
     across.push_back(x[k]);
     up.push_back(y[k]);
   };
   if (columns == 0 || size <= 2 * columns || !(x[size - 1] > x[0])) {
     for (std::size_t k = 0; k < size; ++k) keep(k);
-    return result;
+    return {std::move(across), std::move(up)};
   }
   const double per_column = static_cast<double>(columns) / (x[size - 1] - x[0]);
   std::size_t begin = 0;
@@ -252,7 +251,7 @@ std::pair<std::vector<double>, std::vector<double>> thinned(const std::vector<do
     if (lowest != highest) keep(std::max(lowest, highest));
     begin = std::max(end, begin + 1);
   }
-  return result;
+  return {std::move(across), std::move(up)};
 }
 
 }  // namespace sealwatch::report

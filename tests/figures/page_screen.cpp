@@ -49,6 +49,18 @@ std::string words_of(const pugi::xml_node& node) {
   return joined;
 }
 
+/// Blanks between its elements are none of a drawing's.
+void take_out_blanks(pugi::xml_node node) {
+  for (pugi::xml_node child = node.first_child(); child;) {
+    const pugi::xml_node next = child.next_sibling();
+    if (child.type() == pugi::node_pcdata && words_of(child).empty())
+      node.remove_child(child);
+    else
+      take_out_blanks(child);
+    child = next;
+  }
+}
+
 /// Of DejaVu Sans, the widest of the fonts that the style sheet names, in shares of the letters' size.
 double width_of(std::string_view text, const Font& font) {
   double width = 0.0;
@@ -166,6 +178,7 @@ class Page {
   double drawing(const pugi::xml_node& node, const Column& column, double y) {
     const double width = node.attribute("width").as_double(), height = node.attribute("height").as_double();
     const double scale = std::min(1.0, column.width / width);
+    take_out_blanks(node);
     std::ostringstream svg;
     node.print(svg, "", pugi::format_raw);
     if (draws_) canvas_.raw("<g class=\"screen\">\n");  // the style sheet's letters of a drawing there
@@ -218,7 +231,7 @@ class Page {
 std::string page_screen(std::string_view title, const std::string& html, int width) {
   pugi::xml_document document;
   const std::string whole = "<body>" + html + "</body>";
-  if (const auto read = document.load_string(whole.c_str(), pugi::parse_default | pugi::parse_ws_pcdata_single); !read)
+  if (const auto read = document.load_string(whole.c_str(), pugi::parse_default | pugi::parse_ws_pcdata); !read)
     throw std::runtime_error(std::string("a page that is not well formed: ") + read.description());
   const Column column{.x = kMargin, .width = width - 2.0 * kMargin};
   Canvas measured(std::string(title), width, 0);

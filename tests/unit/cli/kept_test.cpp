@@ -288,7 +288,8 @@ TEST_F(Kept, OfATestTheBeginningOfItsIdWillDo) {
 TEST_F(Kept, ProbabilitiesOnThePageReadAsOnTheScreen) {
   ASSERT_EQ(forecast().status, kOk);
   const std::string page = content(folder_ / "life.html");
-  EXPECT_THAT(page, AllOf(HasSubstr(">under 0.1 %<"), HasSubstr(">over 99.9 %<")));
+  const auto whole = [](const std::string& number) { return " <span class=\"whole\">" + number + " %</span>"; };
+  EXPECT_THAT(page, AllOf(HasSubstr(">under" + whole("0.1")), HasSubstr(">over" + whole("99.9"))));
   EXPECT_THAT(page, AllOf(Not(HasSubstr(">0 %<")), Not(HasSubstr(">100 %<"))));
 }
 

@@ -577,13 +577,19 @@ TEST_F(Commands, ConfigurationIsCheckedAsAWhole) {
   EXPECT_THAT(empty.output, HasSubstr("no asset is configured"));
 }
 
+/// Of /proc/<pid>/stat; empty for a process that ended meanwhile, where an istreambuf_iterator would throw.
+std::string stat_of(const std::filesystem::path& process) {
+  std::ostringstream text;
+  text << std::ifstream(process / "stat").rdbuf();
+  return text.str();
+}
+
 /// Processes that this one started and that still run.
 std::set<pid_t> children_of(pid_t parent) {
   std::set<pid_t> children;
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
     if (std::isdigit(static_cast<unsigned char>(entry.path().filename().string()[0])) == 0) continue;
-    std::ifstream file(entry.path() / "stat");
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    const std::string text = stat_of(entry.path());
     const std::size_t name_end = text.rfind(')');
     if (name_end == std::string::npos) continue;
     std::istringstream rest(text.substr(name_end + 1));
@@ -595,8 +601,7 @@ std::set<pid_t> children_of(pid_t parent) {
 }
 
 bool runs(pid_t process) {
-  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string text = stat_of("/proc/" + std::to_string(process));
   return !text.empty() && text.find(") Z ") == std::string::npos;
 }
 

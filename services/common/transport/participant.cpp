@@ -4,11 +4,13 @@
 #include <time.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <mutex>
+#include <sstream>
 #include <utility>
+#include <vector>
 
 #include "dds/ddsrt/sync.h"
 #include "services/common/transport/refusals.hpp"
@@ -92,19 +94,53 @@ tl::unexpected<Error> dds_failure(std::string what, dds_return_t code, std::stri
                     .advice = std::move(advice)});
 }
 
-bool is_secured(const Configuration& configuration) {
+namespace {
+
+/// As Cyclone DDS reads them: fragments of XML and file://paths between commas.
+std::string settings_of_cyclone(const Configuration& configuration) {
   const char* const uri = std::getenv("CYCLONEDDS_URI");
-  std::string settings = uri != nullptr && *uri != '\0' ? uri : configuration.cyclonedds_uri;
+  return uri != nullptr && *uri != '\0' ? uri : configuration.cyclonedds_uri;
+}
+
+std::vector<std::filesystem::path> files_of(const std::string& settings) {
   constexpr std::string_view kFile = "file://";
+  std::vector<std::filesystem::path> files;
   for (std::size_t begin = settings.find(kFile); begin != std::string::npos; begin = settings.find(kFile, begin + 1)) {
     const std::size_t path = begin + kFile.size();
-    std::ifstream file(settings.substr(path, settings.find(',', path) - path));
-    settings.append(std::istreambuf_iterator<char>(file), {});
+    files.emplace_back(settings.substr(path, settings.find(',', path) - path));
   }
-  return settings.find("Security") != std::string::npos;
+  return files;
+}
+
+// Cyclone DDS takes a directory for a file without settings, and would run without the security that was meant.
+Status check_settings(const Configuration& configuration) {
+  for (const std::filesystem::path& file : files_of(settings_of_cyclone(configuration))) {
+    std::error_code unknown;
+    if (std::filesystem::is_directory(file, unknown))
+      return fail(Error{.file = file.string(),
+                        .place = "CYCLONEDDS_URI",
+                        .value = {},
+                        .rule = "is a directory, not a file of settings",
+                        .advice = "name the XML file in it"});
+  }
+  return {};
+}
+
+}  // namespace
+
+bool is_secured(const Configuration& configuration) {
+  const std::string settings = settings_of_cyclone(configuration);
+  bool secured = settings.find("Security") != std::string::npos;
+  for (const std::filesystem::path& file : files_of(settings)) {
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    secured = secured || text.str().find("Security") != std::string::npos;
+  }
+  return secured;
 }
 
 Result<Participant> Participant::join(const Configuration& configuration) {
+  if (Status settings = check_settings(configuration); !settings) return fail(settings.error());
   listen_to_cyclone();
   const auto id = static_cast<dds_domainid_t>(configuration.domain);
   if (Status entered = domains().enter(id, configuration.cyclonedds_uri); !entered) return fail(entered.error());

@@ -101,6 +101,9 @@ TEST(RightToRetract, HoldsWhereTheSettingsOfCycloneHaveSecurity) {
   EXPECT_TRUE(transport::is_secured(configuration));
   ::setenv("CYCLONEDDS_URI", "<CycloneDDS/>", 1);
   EXPECT_FALSE(transport::is_secured(configuration));
+  ::setenv("CYCLONEDDS_URI", ("file://" + ::testing::TempDir()).c_str(), 1);
+  EXPECT_FALSE(transport::is_secured(configuration)) << "a directory cannot be read";
+  EXPECT_THAT(transport::Participant::join(configuration).error().describe(), HasSubstr("is a directory"));
   ::setenv("CYCLONEDDS_URI", kept.c_str(), 1);
 }
 

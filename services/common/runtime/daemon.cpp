@@ -84,11 +84,14 @@ int cannot_begin(const std::string& service, const Error& error) {
   ::_exit(status);  // the log, which every such line reaches at once, stays open: what computes may tell it something
 }
 
+/// To the thread that waits for a stop, when there is none to wait for any longer. SIGTERM would do, and end the whole
+/// process should that thread ever not hold it back.
+constexpr int kWaitIsOver = SIGUSR1;
+
 sigset_t stop_signals() {
   sigset_t signals;
   sigemptyset(&signals);
-  sigaddset(&signals, SIGTERM);
-  sigaddset(&signals, SIGINT);
+  for (const int signal : {SIGTERM, SIGINT, kWaitIsOver}) sigaddset(&signals, signal);
   return signals;
 }
 
@@ -101,8 +104,8 @@ class StopListener {
     prepare_process_end();
     thread_ = std::thread([this] {
       const sigset_t signals = stop_signals();
-      int signal = 0;
-      sigwait(&signals, &signal);
+      int signal = kWaitIsOver;
+      while (signal == kWaitIsOver && !over_) sigwait(&signals, &signal);  // from outside it means nothing
       if (over_) return;
       end_process_in(kServiceStops, kOk);
       const std::lock_guard lock(mutex_);
@@ -112,7 +115,7 @@ class StopListener {
   }
   ~StopListener() {
     over_ = true;
-    pthread_kill(thread_.native_handle(), SIGTERM);
+    pthread_kill(thread_.native_handle(), kWaitIsOver);
     thread_.join();
   }
   StopListener(const StopListener&) = delete;
@@ -197,7 +200,7 @@ Status serve(const DaemonParts& parts, const Configuration& configuration) {
   if (Status started = runner.start(); !started) return started;
   ::malloc_trim(0);  // restoring the past took memory that is not needed again
   notify_service_manager("READY=1");
-  const Status ran = runner.run(listener.stop());
+  Status ran = runner.run(listener.stop());
   notify_service_manager("STOPPING=1");
   if (!runner.stop(kPatienceAtEnd)) end_now(parts.service, ran);
   return ran;

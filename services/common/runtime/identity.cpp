@@ -71,7 +71,8 @@ std::optional<std::string> identify(const Message& message, const EarlierInputs&
     return std::nullopt;
   if (last == base + end || last.starts_with(base + "#")) return std::nullopt;
   std::string id = base + end;
-  for (int count = 2; earlier.has(id); ++count) id = base + "#" + std::to_string(count) + end;
+  for (int count = 2; earlier.has(id); ++count)
+    id = std::string(base).append("#").append(std::to_string(count)).append(end);
   return id;
 }
 

@@ -47,7 +47,7 @@ std::string shortened(const std::string& value) {
 
 /// The value as it stands, or in quotes where a reader could not tell where it ends.
 std::string quoted(const std::string& given) {
-  const std::string value = visible(given);
+  std::string value = visible(given);
   if (!value.empty() && value.find_first_of(" \"\n\t=") == std::string::npos) return value;
   std::string text = "\"";
   for (const char letter : value) {

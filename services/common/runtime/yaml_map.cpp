@@ -131,8 +131,8 @@ std::optional<double> number_of(const std::string& text) {
   return value;
 }
 
-YamlMap::YamlMap(std::string file, YAML::Node node, std::string path, std::vector<Error>& errors)
-    : file_(std::move(file)), node_(std::move(node)), path_(std::move(path)), errors_(&errors) {
+YamlMap::YamlMap(std::string file, const YAML::Node& node, std::string path, std::vector<Error>& errors)
+    : file_(std::move(file)), node_(node), path_(std::move(path)), errors_(&errors) {
   if (node_.IsMap() && node_.size() <= kMostKeys) return;
   const std::string place = line_of(node_.Mark()) + (path_.empty() ? "" : ", key " + path_);
   if (node_.IsMap())

@@ -47,7 +47,7 @@ class YamlMap {
  public:
   /// `path` is the key under which `node` stands ("" for the root). A node that is no mapping is a fault, and reads as
   /// an empty one.
-  YamlMap(std::string file, YAML::Node node, std::string path, std::vector<Error>& errors);
+  YamlMap(std::string file, const YAML::Node& node, std::string path, std::vector<Error>& errors);
 
   /// Each reads a key if it is there; a wrong value is a fault and leaves `target`. Return whether it was read.
   bool read(const std::string& key, std::string& target);

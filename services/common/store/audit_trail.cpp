@@ -87,7 +87,9 @@ std::optional<AuditBreak> find_break(const std::string& service, const std::vect
   std::int64_t expected = 1;
   for (const AuditEntry& entry : entries) {
     if (entry.sequence != expected)
-      return broken(expected, "entry " + std::to_string(entry.sequence) + " is in its place: it was removed");
+      return broken(
+          expected,
+          std::string("entry ").append(std::to_string(entry.sequence)).append(" is in its place: it was removed"));
     if (entry.previous != previous) return broken(expected, "it does not follow on the entry before it");
     if (entry.hash != audit_hash(entry)) return broken(expected, "it is not what was written");
     previous = entry.hash;

@@ -175,6 +175,29 @@ TEST_F(DaemonTest, EndsAtSigtermWhateverItComputes) {
   }
 }
 
+/// With it a daemon ends its own wait for SIGTERM; from outside it is no reason to stop, and none to die.
+TEST_F(DaemonTest, RunsOnAtTheSignalThatEndsItsOwnWait) {
+  ServiceManager manager(place_.directory());
+  const pid_t daemon = ::fork();
+  if (daemon == 0) _exit(run(usual()));
+  EXPECT_TRUE(manager.heard("READY=1"));
+  ::kill(daemon, SIGUSR1);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  int status = -1;
+  EXPECT_EQ(::waitpid(daemon, &status, WNOHANG), 0) << "it has ended: " << status;
+  ::kill(daemon, SIGTERM);
+  EXPECT_EQ(::waitpid(daemon, &status, 0), daemon);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+}
+
+TEST_F(DaemonTest, WithoutABusItEndsThoughNobodyStopsIt) {
+  parts_.make_bus = [](const Configuration&) -> Result<std::unique_ptr<Bus>> {
+    return fail(Error{.file = {}, .place = "domain 1", .value = {}, .rule = "no bus here", .advice = {}});
+  };
+  constexpr int kInternalFailure = 3;
+  EXPECT_EQ(run(usual()), kInternalFailure);
+}
+
 TEST_F(DaemonTest, RefusesToRunTwiceOnOneState) {
   const auto lock = InstanceLock::take(place_.directory() + "/state", "data_acquisition");
   ASSERT_TRUE(lock.has_value());

@@ -5,7 +5,7 @@
 #   deploy/demo.sh --data DIR    with the recordings (*.csv, *.mat) in DIR, of assets in config/assets that sidecars name
 #                                (docs/recordings.md)
 # Needs root or sudo for the packages, nothing else. Everything it makes is in build/ and demo/ of this checkout. Run it
-# again as often as you like.
+# again as often as you like: one that fails leaves the state of the one before.
 set -euo pipefail
 started_in=$PWD
 cd "$(dirname "$0")/.."
@@ -34,8 +34,10 @@ sealwatch=build/release/bin/sealwatch
 
 # A discovery tag of its own keeps the demo apart from any other sealwatch on this machine.
 export CYCLONEDDS_URI='<CycloneDDS><Domain Id="any"><General><Interfaces><NetworkInterface name="lo" multicast="true"/></Interfaces></General><Discovery><LeaseDuration>2s</LeaseDuration><Tag>sealwatch-demo</Tag></Discovery></Domain></CycloneDDS>'
-rm -rf demo/state demo/results
-mkdir -p demo
+# A place of its own until all recordings are played: they may be of an asset that nobody knows, or cut off.
+unfinished=demo/unfinished
+rm -rf $unfinished
+mkdir -p $unfinished
 
 if [ -z "$data" ]; then
   data=demo/recordings
@@ -49,7 +51,14 @@ fi
 
 mapfile -t recordings < <(recordings_in "$data")
 echo "== replay: ${#recordings[@]} tests through six services over DDS, as fast as they go"
-"$sealwatch" replay --config config --with-services --state demo/state --results demo/results "${recordings[@]}"
+"$sealwatch" replay --config config --with-services --state $unfinished/state --results $unfinished/results "${recordings[@]}" || {
+  status=$?
+  echo "$0: not all recordings were played; what came of them is in $unfinished, demo/state is as it was" >&2
+  exit $status
+}
+rm -rf demo/state demo/results
+mv $unfinished/state $unfinished/results demo
+rmdir $unfinished
 
 cat <<TXT
 

@@ -266,6 +266,7 @@ TEST(LawSizes, CornersGoWithTheSizeOfWhatTheyRound) {
   };
   EXPECT_NEAR(ratio(**find_law("external_leakage", {"G_t"}), {1e-7}), 2.0, 0.01);
   EXPECT_NEAR(ratio(**find_law("external_leakage", {"q_o", "a_o"}), {1e-3, 2.0}), 16.0, 0.5);
+  EXPECT_NEAR(ratio(**find_law("external_leakage", {"G_o", "p_o"}), {1e-7, 500.0}), 7.0, 0.01);
 }
 
 /// Sizes in a plant's file are orders of magnitude: a friction of 6 times the largest of the catalogue's is still found.

@@ -2,13 +2,9 @@
 
 namespace sealwatch::laws {
 
-// V = k (max(|u| - u_0, 0)) sign(u) as the difference of two positive parts, each rounded over 0.2 V: odd, zero at zero.
+// V = k sgn(u) max(|u| - u_0, 0), rounded over 0.2 V
 static LawOutput evaluate_driver_saturation(const LawInput& in) {
-  const double width = in.rounding[0];
-  const auto& u = in.signal[1];
-  const auto& u_0 = in.parameter[1];
-  return {.contribution = in.parameter[0] * (smooth_positive(u - u_0, width) - smooth_positive(-u - u_0, width)),
-          .rate = {}};
+  return {.contribution = in.parameter[0] * beyond(in.signal[1], in.parameter[1], in.rounding[0]), .rate = {}};
 }
 
 Law driver_saturation() {

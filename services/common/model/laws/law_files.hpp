@@ -51,6 +51,11 @@ inline constexpr double kStandstill_m_s = 1e-9;
 /// Pressure below which a turbulent flow is laminar, in the sizes of `eha`. [Pa]
 inline constexpr double kLaminar_Pa = 1e3;
 
+/// sgn(a) max(|a| - end, 0), its corners rounded over the width s: odd, and zero at zero.
+[[nodiscard]] inline LawScalar beyond(const LawScalar& a, const LawScalar& end, double s) {
+  return smooth_positive(a - end, s) - smooth_positive(-a - end, s);
+}
+
 [[nodiscard]] inline LawScalar sine(const LawScalar& a) { return a.chain(std::sin(a.value), std::cos(a.value)); }
 
 /// exp(-a^2)

@@ -32,6 +32,8 @@ inline constexpr double kCurrent_A = 1.0;
 
 /// Share of the reference size, in the sizes of `eha`, over which corners are rounded.
 inline constexpr double kCorner = 0.02;
+/// Over which a relief valve or a lip opens, in the sizes of `eha`: it may hold the pressure there for long. [Pa]
+inline constexpr double kOpening_Pa = 1e4;
 
 [[nodiscard]] inline LawScalar even_power(const LawScalar& signal, double reference, const LawScalar& exponent,
                                           double width) {

@@ -2,14 +2,9 @@
 
 namespace sealwatch::laws {
 
-// T = k (max(|i| - i_k, 0)) sign(i) as the difference of two positive parts, each rounded over 0.2 A: odd, zero at
-// zero.
+// T = k sgn(i) max(|i| - i_k, 0), rounded over 0.2 A
 static LawOutput evaluate_torque_saturation_knee(const LawInput& in) {
-  const double width = in.rounding[0];
-  const auto& i = in.signal[2];
-  const auto& i_k = in.parameter[1];
-  return {.contribution = in.parameter[0] * (smooth_positive(i - i_k, width) - smooth_positive(-i - i_k, width)),
-          .rate = {}};
+  return {.contribution = in.parameter[0] * beyond(in.signal[2], in.parameter[1], in.rounding[0]), .rate = {}};
 }
 
 Law torque_saturation_knee() {

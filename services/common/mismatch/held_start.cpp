@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -19,7 +20,7 @@ namespace {
 constexpr double kFarOff = 0.1;      // of the spread of a channel
 constexpr double kNoise = 1.1;       // times the noise's variance: its own size is known to a tenth
 constexpr double kTimeShare = 0.25;  // of the time limit: a start, and no more
-constexpr int kIterations = 8;       // to see whether simulations come nearer where they are held, or follow free
+constexpr int kIterations = 8;       // to see whether simulations come nearer where they are held
 constexpr double kEnoughRows = 8000.0;
 // Within so many distances between samples: what adds up slowly shows; and, where that is still far off, noise is
 // averaged and little drifts.
@@ -39,26 +40,18 @@ bool acts_in_the_plant(const Law& law) { return !is_sensor(law.kind) && law.kind
 double misfit_of(const FittedModel& model) { return model.misfit / model.residuals; }
 
 // Nearly in proportion, the laws that promise most are those that bring most, and pairs of them, too: few refits do.
-// What explains less than half of what is left is asked in free runs; what `runs_free` cannot follow (friction that
-// falls steeply with speed, and chatters) is no start.
-bool add_best(Trial& found, const Data& held, const ExplainOptions& options,
-              const std::function<bool(const Trial&)>& runs_free, Laws laws) {
+std::vector<std::vector<LawStart>> most_promising(const Screening& asked, const Trial& found, int maximum_laws) {
   constexpr std::size_t kRefits = 4;
-  const auto asked =
-      screen(*found.model, held, {.draws = 1, .seed = options.seed, .threads = options.threads, .laws = laws});
-  if (!asked) return false;
   std::vector<std::vector<LawStart>> starts;
-  for (LawStart& start : ranked_laws(*asked, asked->candidates.size(), true))
+  for (LawStart& start : ranked_laws(asked, asked.candidates.size(), true))
     if (starts.size() < kRefits && acts_in_the_plant(*start.effect.law)) starts.push_back({std::move(start)});
-  if (static_cast<int>(found.effects.size()) + 2 <= options.maximum_laws)
-    std::ranges::move(ranked_pairs(*asked, found.model->misfit, false), std::back_inserter(starts));
-  const std::vector<Trial> trials = refit(found, starts, held, options.threads, {.first_round_only = true});
-  const auto best = std::ranges::find_if(trials, [&](const Trial& trial) {
-    return share_explained(misfit_of(*found.model), misfit_of(*trial.model)) >= kExplainedAtLeast && runs_free(trial);
-  });
-  if (best == trials.end()) return false;
-  found = with_derivatives(*best, held, options.threads);
-  return true;
+  if (static_cast<int>(found.effects.size()) + 2 <= maximum_laws)
+    std::ranges::move(ranked_pairs(asked, found.model->misfit, false), std::back_inserter(starts));
+  return starts;
+}
+
+bool are_listed(const std::vector<LawStart>& laws) {
+  return std::ranges::none_of(laws, [](const LawStart& law) { return law.effect.law->closed_form; });
 }
 
 // What the simulations are held to, within so many samples, and until when.
@@ -190,25 +183,59 @@ class HeldSearch {
   }
 
   Trial laws_beside(Trial trial, Laws laws) {
-    const auto runs_free = [&](const Trial& with) { return free_run_from(with, kIterations).has_value(); };
     while (excess(*trial.model) > kNoise && static_cast<int>(trial.effects.size()) < options_.maximum_laws &&
-           add_best(trial, held_, options_, runs_free, laws)) {
+           add_best(trial, laws)) {
     }
     was_cut_ = was_cut_ || until_.was_met();
     return trial;
   }
 
-  [[nodiscard]] Result<FittedModel> free_run_from(const Trial& trial, int iterations) const {
-    return fit_to_some(*trial.model, data_, among(places_, data_), options_.threads, iterations);
+  // What explains less than half of what is left is asked in free runs; what does not run free (friction that falls
+  // steeply with speed, and chatters) is no start.
+  bool add_best(Trial& found, Laws laws) {
+    const std::vector<Trial> trials = refits_beside(found, laws);
+    const auto best = std::ranges::find_if(trials, [&](const Trial& trial) {
+      return share_explained(misfit_of(*found.model), misfit_of(*trial.model)) >= kExplainedAtLeast && runs_free(trial);
+    });
+    if (best == trials.end()) return false;
+    found = with_derivatives(*best, held_, options_.threads);
+    return true;
   }
+
+  // Best first. Listed laws that nothing is beside are refitted once, also where closed forms compete with them.
+  std::vector<Trial> refits_beside(const Trial& found, Laws laws) {
+    const auto asked =
+        screen(*found.model, held_, {.draws = 1, .seed = options_.seed, .threads = options_.threads, .laws = laws});
+    if (!asked) return {};
+    std::vector<std::vector<LawStart>> starts = most_promising(*asked, found, options_.maximum_laws);
+    const bool known = laws == Laws::all && found.effects.empty();
+    if (known) std::erase_if(starts, are_listed);
+    std::vector<Trial> trials = refit(found, starts, held_, options_.threads, {.first_round_only = true});
+    if (known) {
+      trials.insert(trials.end(), listed_.begin(), listed_.end());
+      std::ranges::stable_sort(trials, {}, [](const Trial& trial) { return trial.model->misfit; });
+    } else if (found.effects.empty()) {
+      listed_ = trials;
+    }
+    return trials;
+  }
+
+  // As in a first round, with fixed values as they are known. Nothing where the first simulation fails.
+  [[nodiscard]] Result<FittedModel> free_run_of(const Trial& trial, int iterations) const {
+    const AsKnown plain = as_known(trial.model->asset, data_);
+    return fit_to_some(*trial.model, plain.asset, plain.data, among(places_, data_), options_.threads, iterations);
+  }
+  [[nodiscard]] bool runs_free(const Trial& trial) const { return free_run_of(trial, 0).has_value(); }
 
   [[nodiscard]] HeldStart running_free(Trial found) const {
     HeldStart start{.trial = {}, .was_cut = was_cut_};
     if (found.effects.empty()) return start;
-    Result<FittedModel> free = free_run_from(found, kSearchIterations);
-    if (free && share_explained(misfit_of(baseline_), misfit_of(*free)) >= kExplainedAtLeast)
+    const Result<FittedModel> free = free_run_of(found, kSearchIterations);
+    if (!free) return start;
+    Result<FittedModel> model = fit_model(free->asset, data_, &*free, options_.threads);
+    if (model && share_explained(misfit_of(baseline_), misfit_of(*model)) >= kExplainedAtLeast)
       start.trial = Trial{.effects = std::move(found.effects),
-                          .model = std::make_shared<const FittedModel>(std::move(*free)),
+                          .model = std::make_shared<const FittedModel>(std::move(*model)),
                           .is_start = true};
     return start;
   }
@@ -219,6 +246,7 @@ class HeldSearch {
   Deadline until_;
   std::vector<std::size_t> places_;
   Data held_;
+  std::vector<Trial> listed_;  ///< listed laws that nothing is beside
   bool was_cut_ = false;
 };
 

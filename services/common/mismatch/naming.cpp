@@ -477,6 +477,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     if (excess(*from.model) < data.least_excess || !in_time("which of the laws found before are needed")) return naming;
     drop_what_is_not_needed(naming, data, options.threads);
     Result<Screening> last = screen(*naming.best.model, data, screening);
+    if (!last && !in_time("what the laws found before leave")) return naming;
     if (!last) return fail(last.error());
     naming.last = std::move(*last);
     if (from.is_start && in_time("other laws in place of those found with held states")) {

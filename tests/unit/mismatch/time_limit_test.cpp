@@ -148,6 +148,27 @@ TEST(TimeLimit, WhatWasFoundBesideAValueIsNotLost) {
   EXPECT_FALSE(name_effects(baseline, data, {}, {}, found, &known));
 }
 
+// The search sets out from a law that fits, and time is up while it looks at what that leaves.
+TEST(TimeLimit, WhatASearchSetsOutFromIsNotLost) {
+  const std::vector<Recording> recordings = two_tests();
+  Data data = data_of(recordings);
+  Deadline deadline;
+  data.deadline = &deadline;
+  const auto fitted = [&](const AssetConfig& asset) {
+    return std::make_shared<const FittedModel>(fit_model(asset, data, nullptr, 2).value());
+  };
+  const auto baseline = fitted(actuator());
+  AssetConfig leaking = with_a_leak();
+  leaking.physics.front().parameters.at("G").estimate = true;
+  const Trial found{{{find_law("external_leakage", {"G"}).value(), "chamber_a"}}, fitted(leaking)};
+  const Screening known = screen(*baseline, data, {}).value();
+  deadline.set_in(1e-2);  // the screening takes longer, what is before it does not
+  const auto naming = name_effects(baseline, data, {}, {}, found, &known);
+  ASSERT_TRUE(naming) << naming.error().describe();
+  EXPECT_THAT(naming->best.effects, SizeIs(1));
+  EXPECT_THAT(naming->not_asked, SizeIs(1));
+}
+
 TEST(TimeLimit, ASimulationThatRunsIsEnded) {
   const Recording recording = recording_of(actuator(), 1.0);
   const auto simulation = PlantSimulation::create(actuator(), recording.samples).value();

@@ -9,6 +9,7 @@
 #include "services/common/equations/derived_sizes.hpp"
 #include "services/common/equations/site_table.hpp"
 #include "services/common/text/format.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch::equations {
 namespace {
@@ -54,7 +55,7 @@ ReferenceQuantity reference_quantity(const NeededSize& size, const std::vector<T
 }
 
 std::string in_words(const ReferenceQuantity& quantity, const std::string& unit) {
-  return text::format("about {:.3g} {} ({})", quantity.value, unit, quantity.meaning);
+  return text::format("about {} {} ({})", text::number(quantity.value), unit, quantity.meaning);
 }
 
 }  // namespace sealwatch::equations

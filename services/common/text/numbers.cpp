@@ -11,7 +11,7 @@ namespace sealwatch::text {
 
 std::string significant(double value, int digits) { return format("{:.{}g}", value, digits); }
 
-std::string general(double value) { return significant(value, 6); }
+std::string general(double value) { return number(value, 6); }
 
 std::string number(double value, int digits) {
   constexpr double kLargest = 1e7;

@@ -125,7 +125,7 @@ TEST(PlantFile, NamesEachFaultWithItsLine) {
       {"N s/m: 1e-3, N s2/m2: 1e-3",
        "",
        {"line 21, key law_sizes", "'N s/m'", "is missing",
-        "N s/m: about 2e+06 N s/m (viscous friction of its piston)"}},
+        "N s/m: about 2000000 N s/m (viscous friction of its piston)"}},
       {"N s2/m2: 1e-3}",
        "N s2/m2: 1e-3, N*m: 2}",
        {"line 21, key law_sizes.N*m", "is not a unit of any law; laws have it as N m"}},
@@ -147,7 +147,7 @@ TEST(PlantFile, NamesEachFaultWithItsLine) {
       {"unit: N s/m", "unit: kg rpm", {"is not the SI unit", "here kg/s"}},
       {"c: {value: 4.0", "c: {value: 0", {"line 10", "give min and max"}},
       {"NAME", "eha #NAME", {"line 1, key name", "is the name of a plant that is built in"}},
-      {"N: 1e-3, ", "", {"where 1 stands for N: about 6e+04 N (load on its rod)"}},
+      {"N: 1e-3, ", "", {"where 1 stands for N: about 60000 N (load on its rod)"}},
       {"meaning: a mass", "meening: a mass", {"did you mean 'meaning'"}},
       {"outputs:\n", "output:\n", {"line 5, key output", "did you mean 'outputs'"}},
   };

@@ -44,6 +44,9 @@ TEST(Numbers, HaveTheirDigits) {
   EXPECT_EQ(significant(2.611e13), "2.61e+13");
   EXPECT_EQ(general(0.0859436924), "0.0859437");
   EXPECT_EQ(general(1e-5), "1e-05");
+  EXPECT_EQ(general(-1013250.0), "-1013250");
+  EXPECT_EQ(general(2e6), "2000000");
+  EXPECT_EQ(general(2e7), "2e+07");
   EXPECT_EQ(exact(0.1), "0.1");
   EXPECT_EQ(exact(1e-7), "1e-07");
   EXPECT_EQ(with_zeros(1.23), "1.230");

@@ -1,17 +1,41 @@
 #include "services/cli/command_line.hpp"
 
 #include <algorithm>
+#include <array>
+#include <iostream>
 
 #include "sealwatch/core/text.hpp"
 #include "services/cli/arguments.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
 #include "services/common/core/build_version.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
 
 std::string footer_of(const std::string& example) { return "Example:\n  " + example + "\n" + kExitStatus; }
+
+/// What a newcomer does first, in this order, from the root of the checkout: each works on what those before it have
+/// made, but for the last two, which need recordings of a machine.
+struct FirstStep {
+  const char* command;
+  const char* example;
+};
+constexpr std::array kFirstSteps = {
+    FirstStep{"simulate",
+              "sealwatch simulate --asset config/assets/xt03-mv2.yaml --ageing --months 48 --out first/life"},
+    FirstStep{"fit", "sealwatch fit --asset config/assets/xt03-mv2.yaml first/life/2009-05*.csv"},
+    FirstStep{"replay", "sealwatch replay --with-services --state first/state first/life/*.csv"},
+    FirstStep{"forecast", "sealwatch forecast --state first/state --page first/forecast.html"},
+    FirstStep{"asset", "sealwatch asset new --from LOG.csv --out A.yaml"},
+    FirstStep{"explain", "sealwatch explain --asset A.yaml --fit fit_*.csv --holdout holdout_*.csv --out report"}};
+
+std::string first_steps() {
+  std::string text = "First steps (docs/tutorial.md):\n";
+  for (const FirstStep& step : kFirstSteps) text.append("  ").append(step.example).append("\n");
+  return text + "  sealwatch COMMAND --help\n";
+}
 
 }  // namespace
 
@@ -20,16 +44,36 @@ CommandLine::CommandLine()
       chosen_([] { return kBadInput; }) {
   app_.set_version_flag("--version", version_line());
   app_.require_subcommand(1);
-  app_.footer(
-      "First steps (docs/tutorial.md):\n"
-      "  sealwatch simulate --asset config/assets/xt03-mv2.yaml --out recordings\n"
-      "  sealwatch fit --asset config/assets/xt03-mv2.yaml recordings/*.csv\n"
-      "  sealwatch COMMAND --help\n" +
-      std::string(kExitStatus));
+  app_.footer(first_steps() + kExitStatus);
   for (const auto add : {&add_analysis, &add_services, &add_operation, &add_maintenance}) add(*this);
 }
 
+std::string CommandLine::overview() const {
+  std::string text =
+      app_.get_description() +
+      "\n\nFrom recorded partial stroke tests it estimates the leakage past the piston seal, forecasts the "
+      "remaining\nuseful life and advises when to act. Where recordings differ from a simulation, it names "
+      "the missing physics.\n\nBegin with:\n";
+  std::size_t width = 0;
+  for (const FirstStep& step : kFirstSteps) width = std::max(width, text::letters(step.command));
+  for (const FirstStep& step : kFirstSteps)
+    text.append("  ")
+        .append(text::padded(step.command, width))
+        .append("  ")
+        .append(app_.get_subcommand(step.command)->get_description())
+        .append("\n")
+        .append(width + 4, ' ')
+        .append(step.example)
+        .append("\n");
+  return text +
+         "\nsealwatch --help lists all commands, sealwatch COMMAND --help explains one; docs/tutorial.md leads on.\n";
+}
+
 int CommandLine::run(int argc, char** argv) {
+  if (argc <= 1) {
+    std::cerr << overview();
+    return kBadInput;
+  }
   const std::vector<std::string> known = commands();
   if (argc > 1 && argv[1][0] != '-' && std::ranges::find(known, argv[1]) == known.end()) return unknown(argv[1]);
   arguments_.assign(argv + 1, argv + argc + 1);

@@ -34,6 +34,8 @@ class CommandLine {
   static void add_map(CLI::App* subcommand, std::string& map_file);
 
   [[nodiscard]] const CLI::App& app() const { return app_; }
+  /// For who gives no command: what the program is, and the first commands with an example each.
+  [[nodiscard]] std::string overview() const;
   /// Those given, without the program's name; ends with nullptr.
   [[nodiscard]] const std::vector<char*>& arguments() const { return arguments_; }
 

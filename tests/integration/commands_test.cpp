@@ -4,8 +4,13 @@
 #include <signal.h>
 #include <sys/wait.h>
 
+#include <algorithm>
+#include <cctype>
 #include <chrono>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
@@ -419,15 +424,17 @@ TEST_F(Commands, MemoryThatEndsIsToldAsSuch) {
 }
 #endif
 
+/// Those that a help text describes.
+std::set<std::string> options_in(const std::string& text) {
+  std::set<std::string> options;
+  const std::regex option(R"((?:^|\n) +(?:-\w,)?(--[a-z-]+))");
+  for (std::sregex_iterator one(text.begin(), text.end(), option), end; one != end; ++one) options.insert((*one)[1]);
+  return options;
+}
+
 /// Options in groups are options too.
 TEST_F(Commands, CompletionAndManualHaveEveryOptionThatHelpShows) {
   const std::string arms = run({"sealwatch", "completion", "bash"}).output, page = run({"sealwatch", "manual"}).output;
-  const auto options_in = [](const std::string& text) {
-    std::set<std::string> options;
-    const std::regex option(R"((?:^|\n) +(?:-\w,)?(--[a-z-]+))");
-    for (std::sregex_iterator one(text.begin(), text.end(), option), end; one != end; ++one) options.insert((*one)[1]);
-    return options;
-  };
   const std::string help = run({"sealwatch", "--help"}).output;
   const std::regex command(R"((?:^|\n)  ([a-z-]+) )");
   int commands = 0;
@@ -497,6 +504,40 @@ TEST_F(Commands, HelpGroupsTheCommandsInFewWordsAndEachHasAnExample) {
     ++commands;
   }
   EXPECT_GE(commands, 31U);
+}
+
+TEST_F(Commands, WithoutACommandTheFirstOnesAreShownWithAnExampleEach) {
+  const Finished bare = run({"sealwatch"});
+  EXPECT_EQ(bare.status, 2);
+  EXPECT_THAT(bare.output, ::testing::AllOf(::testing::StartsWith("sealwatch: condition monitoring"),
+                                            HasSubstr("sealwatch --help lists all")));
+  const std::string help = run({"sealwatch", "--help"}).output;
+  std::istringstream lines(bare.output);
+  int examples = 0;
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_LE(line.size(), 120U) << line;
+    std::istringstream words(line);
+    std::vector<std::string> example{std::istream_iterator<std::string>(words), {}};
+    if (!line.starts_with("   ") || example.size() < 3 || example[0] != "sealwatch") continue;
+    ++examples;
+    EXPECT_THAT(help, HasSubstr("  " + line.substr(line.find("sealwatch")) + "\n")) << "not among the first steps";
+    std::vector<std::string> asks{"sealwatch", example[1]};
+    if (std::ranges::all_of(example[2], [](char letter) { return std::islower(letter) != 0; }))
+      asks.push_back(example[2]);
+    asks.emplace_back("--help");
+    const Finished command = run(asks);
+    EXPECT_EQ(command.status, 0) << line;
+    const std::set<std::string> known = options_in(command.output);
+    for (const std::string& word : example) {
+      EXPECT_TRUE(!word.starts_with("--") || known.contains(word)) << word << " in: " << line;
+      EXPECT_TRUE(!word.starts_with("config/") || std::filesystem::exists(SEALWATCH_SOURCE_DIR "/" + word)) << word;
+    }
+  }
+  EXPECT_EQ(examples, 6);
+  const std::string shown = (folder_ / "shown.txt").string();
+  const std::string unheard = std::string(SEALWATCH_BINARY_DIR "/bin/sealwatch 2>/dev/null >") + shown;
+  EXPECT_NE(std::system(unheard.c_str()), 0);
+  EXPECT_EQ(std::filesystem::file_size(shown), 0U) << "not on standard error";
 }
 
 TEST_F(Commands, WhatIsKeptIsLookedForWithWords) {

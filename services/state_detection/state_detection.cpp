@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sealwatch/message/retraction.hpp"
+#include "sealwatch/model/too_long_to_simulate.hpp"
 #include "services/common/text/format.hpp"
 #include "services/common/text/numbers.hpp"
 #include "services/state_detection/indicators.hpp"
@@ -18,6 +19,7 @@ namespace sealwatch {
 namespace {
 
 constexpr const char* kProducer = "state_detection 0.1.0";
+constexpr const char* kNoResidual = "no simulation residual: ";
 /// An asset whose test has been overdue for longer is not in live operation: old recordings are being taken in.
 constexpr double kLongestSilence_months = 12.0;
 /// The tests of a history that is played back follow each other faster.
@@ -231,8 +233,11 @@ void StateDetection::judge(AssetState& state, const AssetConfig& asset, const Te
       text.append("is ").append(name_of(stale.state)).append(stale.reason.empty() ? "" : ": ").append(stale.reason);
     report.verdict_reasons.push_back(std::move(text));
   }
+  const auto too_long = simulator_ ? too_long_to_simulate(window.samples.time_s) : std::nullopt;
+  if (too_long) refuse(*too_long, report);
   if (!is_judged(report.verdict)) return;
-  const std::optional<double> worn = add_residuals(state, asset, features, window, stop, report);
+  const std::optional<double> worn =
+      too_long ? std::nullopt : add_residuals(state, asset, features, window, stop, report);
   if (worn && !goes_by_leakage(asset))
     indicators.push_back({"condition", "1", asset.condition->condition(*worn), false, 0.0});
   report.judgements = judge_indicators(asset, indicators, history.baseline());
@@ -242,6 +247,13 @@ void StateDetection::judge(AssetState& state, const AssetConfig& asset, const Te
   for (RegionJudgement& judgement : judge_channels(asset, features.channel_status, expected))
     report.judgements.push_back(std::move(judgement));
   history.judge(report.judgements);
+}
+
+void StateDetection::refuse(const std::string& too_long, StateReport& report) {
+  if (report.verdict == PstVerdict::failed) report.verdict_reasons.push_back(kNoResidual + too_long);
+  if (report.verdict != PstVerdict::passed) return;
+  report.verdict = PstVerdict::not_judged;
+  report.verdict_reasons.insert(report.verdict_reasons.begin(), too_long);
 }
 
 std::optional<double> StateDetection::add_residuals(const AssetState& state, const AssetConfig& asset,
@@ -256,7 +268,7 @@ std::optional<double> StateDetection::add_residuals(const AssetState& state, con
   if (residuals)
     report.residuals = std::move(residuals->summaries);
   else
-    cannot("no simulation residual: ", residuals.error());
+    cannot(kNoResidual, residuals.error());
   if (state.accepted.in_force()) {
     const auto accepted = residuals_of_accepted(state.accepted.applied_to(asset), window, leakage, *simulator_, stop);
     if (accepted)

@@ -74,6 +74,9 @@ class StateDetection final : public Layer {
   std::optional<StateReport> judge_anew(const std::string& asset_id, AssetState& state) const;
   void judge(AssetState& state, const AssetConfig& asset, const TestFeatures& features, const TestWindow& window,
              const std::stop_token& stop, StateReport& report) const;
+  /// Marks a test that is judged so far but takes too long to simulate. Not compared with its model it has not passed;
+  /// a stroke that failed has failed.
+  static void refuse(const std::string& too_long, StateReport& report);
   /// Value of what wears with which the simulation comes nearest to the recording, where it was asked.
   std::optional<double> add_residuals(const AssetState& state, const AssetConfig& asset, const TestFeatures& features,
                                       const TestWindow& window, const std::stop_token& stop, StateReport& report) const;

@@ -24,8 +24,9 @@ struct TestLimits {
   double shortest_interval_s = 1e-5;
   /// Seven days: the slowest plants' tests take hours. What goes on for longer is no test but a log.
   double longest_s = 7.0 * 86400.0;
-  /// Steps of the longest permitted size that one simulation of a test takes, for an estimate within a service: it needs
-  /// up to a hundred simulations, of 8 us a step, and two minutes of a processor are given for it. Seven hours.
+  /// Steps of the longest permitted size that one simulation of a test takes within a service: an estimate needs up to a
+  /// hundred simulations, of 8 us a step, state detection as many, and two minutes of a processor are given for them.
+  /// Seven hours.
   double most_steps_of_simulation = 100'000.0;
   /// Times count from the start of a test, or from 1970 for some senders; beyond it they are no times.
   double largest_time_s = 1e10;
@@ -56,7 +57,8 @@ inline constexpr double kSmallestNumber = 1e-100;
 /// The same of numbers, duration and mean interval that are counted elsewhere.
 [[nodiscard]] std::optional<std::string> too_many_numbers(double numbers, const TestLimits& limits = kTestLimits);
 [[nodiscard]] std::optional<std::string> too_long(double duration_s, const TestLimits& limits = kTestLimits);
-/// For an estimate beside other tests; it need not be for any other use.
+/// For what is simulated beside other tests; it need not be for any other use. model/too_long_to_simulate.hpp asks it of
+/// a test's times.
 [[nodiscard]] std::optional<std::string> too_long_to_simulate(double duration_s, double longest_step_s,
                                                               const TestLimits& limits = kTestLimits);
 [[nodiscard]] std::optional<std::string> too_fast(double interval_s, const TestLimits& limits = kTestLimits);

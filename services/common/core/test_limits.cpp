@@ -33,8 +33,8 @@ std::optional<std::string> too_long_to_simulate(double duration_s, double longes
   const double steps = duration_s / longest_step_s;
   if (steps <= limits.most_steps_of_simulation) return std::nullopt;
   return text::format(
-      "the test is {:.4g} s long: a simulation takes {:.3g} steps of {:.3g} s, more than the {:.0f} that an estimate "
-      "may take in a service; cut the recording to the stroke and some seconds around it, record a slow plant with "
+      "the test is {:.4g} s long: a simulation takes {:.3g} steps of {:.3g} s, more than the {:.0f} that it may "
+      "take in a service; cut the recording to the stroke and some seconds around it, record a slow plant with "
       "rows further apart, or use 'sealwatch fit', which has no such limit",
       duration_s, steps, longest_step_s, limits.most_steps_of_simulation);
 }

@@ -5,19 +5,14 @@
 #include <string>
 #include <utility>
 
-#include "sealwatch/core/test_limits.hpp"
 #include "sealwatch/estimation/cylinder_circuit.hpp"
 #include "sealwatch/model/driving_channels.hpp"
 #include "sealwatch/model/simulation.hpp"
+#include "sealwatch/model/too_long_to_simulate.hpp"
 #include "services/common/estimation/cannot_fit.hpp"
 
 namespace sealwatch {
 namespace {
-
-std::optional<std::string> why_not_simulated(const std::vector<double>& time_s) {
-  if (time_s.empty()) return std::nullopt;
-  return too_long_to_simulate(time_s.back() - time_s.front(), longest_step_s(time_s));
-}
 
 class PemEstimator final : public Estimator {
  public:
@@ -31,7 +26,7 @@ class PemEstimator final : public Estimator {
     ActuatorFitOptions actuator = actuator_;
     actuator.deadline = &deadline;
     std::vector<FitReport> fits;
-    if (auto why = why_not_simulated(samples.time_s))
+    if (auto why = too_long_to_simulate(samples.time_s))
       fits.push_back(cannot_fit(asset.model, std::move(*why)));
     else
       fits.push_back(fit_actuator(asset, {&samples, 1}, actuator).report);

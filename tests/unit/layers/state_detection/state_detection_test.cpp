@@ -163,6 +163,74 @@ TEST(StateDetection, TheSimulationsOfATestCanBeCalledOff) {
   EXPECT_TRUE(simulator->called_off);
 }
 
+/// Counts how often it is asked.
+class Counting final : public Simulator {
+ public:
+  [[nodiscard]] Result<TimeSeries> simulate(const AssetConfig& asset, const TimeSeries& recorded,
+                                            const std::stop_token& cancel) const override {
+    ++simulations;
+    return synthetic::FakeSimulator(1.5, 0.0, 1e13).simulate(asset, recorded, cancel);
+  }
+  mutable int simulations = 0;
+};
+
+/// A test that goes on at rest for hours.
+synthetic::Test followed_by_rest(synthetic::Test test, double hours) {
+  constexpr double kApart_s = 4.0;
+  TimeSeries& samples = test.window.samples;
+  while (samples.time_s.back() < 3600.0 * hours) {
+    samples.time_s.push_back(samples.time_s.back() + kApart_s);
+    for (Series& series : samples.channels) series.values.push_back(series.values.back());
+  }
+  test.features.duration_s = samples.time_s.back();
+  return test;
+}
+
+StateReport report_on(StateDetection& detection, const synthetic::Test& test) {
+  (void)detection.receive(test.features);
+  const Conclusion conclusion = detection.receive(test.window);
+  EXPECT_THAT(conclusion.consumed,
+              testing::UnorderedElementsAre(test.features.header.message_id, test.window.header.message_id));
+  EXPECT_EQ(conclusion.outputs.size(), 1U);
+  return std::get<StateReport>(conclusion.outputs.at(0));
+}
+
+TEST(StateDetection, ATestOfManyHoursIsRefusedByNameAndTheNextIsJudged) {
+  const auto simulator = std::make_shared<const Counting>();
+  StateDetection detection(std::vector<AssetConfig>{synthetic::asset("A1")}, simulator);
+  const StateReport refused = report_on(detection, followed_by_rest(synthetic::make({}, {}), 12.0));
+  EXPECT_EQ(refused.verdict, PstVerdict::not_judged);
+  ASSERT_FALSE(refused.verdict_reasons.empty());
+  EXPECT_THAT(refused.verdict_reasons.front(),
+              testing::AllOf(HasSubstr("is 4.32e+04 s long"), HasSubstr("cut the recording to the stroke")));
+  EXPECT_TRUE(refused.judgements.empty());
+  EXPECT_EQ(simulator->simulations, 0);
+
+  Circumstances later;
+  later.number = 1;
+  const StateReport good = report_on(detection, synthetic::make({}, later));
+  EXPECT_EQ(good.verdict, PstVerdict::passed);
+  EXPECT_FALSE(good.residuals.empty());
+  later.number = 2;
+  EXPECT_EQ(report_on(detection, followed_by_rest(synthetic::make({}, later), 6.0)).verdict, PstVerdict::passed);
+}
+
+/// What no simulation is needed for is said of it: the valve did not close.
+TEST(StateDetection, AFailedStrokeOfManyHoursHasFailed) {
+  const auto simulator = std::make_shared<const Counting>();
+  StateDetection detection(std::vector<AssetConfig>{synthetic::asset("A1")}, simulator);
+  Condition stuck;
+  stuck.stroke_m = 0.004;
+  const StateReport failed = report_on(detection, followed_by_rest(synthetic::make(stuck, {}), 12.0));
+  EXPECT_EQ(failed.verdict, PstVerdict::failed);
+  EXPECT_THAT(failed.verdict_reasons.front(), HasSubstr("the piston moved"));
+  EXPECT_THAT(failed.verdict_reasons, Contains(testing::AllOf(HasSubstr("no simulation residual: the test is"),
+                                                              HasSubstr("cut the recording to the stroke"))));
+  EXPECT_FALSE(failed.judgements.empty());
+  EXPECT_TRUE(failed.residuals.empty());
+  EXPECT_EQ(simulator->simulations, 0);
+}
+
 TEST(StateDetection, ATestWhoseOtherHalfNeverComesHoldsUpNoLaterOne) {
   Journal undisturbed, attacked;
   StateDetection one = layer(), other = layer();

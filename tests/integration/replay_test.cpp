@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 
 #include <fstream>
+#include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -167,6 +168,66 @@ TEST_F(Replay, WithServicesIsRefusedWhereAnotherIsStartingThem) {
   EXPECT_EQ(refused.status, 2) << refused.output;
   EXPECT_THAT(refused.output, ::testing::HasSubstr("process " + std::to_string(::getpid())));
   EXPECT_EQ(processes_with(state_directory("taken").string()), 0U);
+}
+
+/// The same test with hours of rest behind it: with fewer rows a second, as one test has so many at most, and with more
+/// rest before it, so that there are enough rows to tell where it began.
+std::string among_rest(const std::filesystem::path& recording, const std::filesystem::path& folder, double hours) {
+  constexpr double kApart_s = 0.2;
+  constexpr std::size_t kRowsOfRest = 5;  // they differ by their noise: what stays the same is frozen
+  constexpr double kBefore_s = 10.0;
+  std::ifstream from(recording);
+  std::string header, line;
+  std::getline(from, header);
+  std::vector<std::pair<double, std::string>> rows;  // times, and what is behind them
+  while (std::getline(from, line)) rows.emplace_back(std::stod(line), line.substr(line.find(',')));
+
+  std::filesystem::path sidecar = recording;
+  std::filesystem::create_directories(folder);
+  std::filesystem::copy(sidecar.replace_extension(".yaml"), folder);
+  std::ofstream to(folder / recording.filename());
+  to << header << '\n' << std::setprecision(9);
+  double time_s = 0.0;
+  const auto write = [&](const std::string& row) {
+    to << time_s << row << '\n';
+    time_s += kApart_s;
+  };
+  while (time_s < kBefore_s)
+    for (std::size_t k = 0; k < kRowsOfRest; ++k) write(rows[k].second);
+  const double begin_s = time_s;
+  for (const auto& [row_s, row] : rows)
+    if (begin_s + row_s > time_s - 1e-6) write(row);
+  while (time_s < 3600.0 * hours)
+    for (std::size_t k = rows.size() - kRowsOfRest; k < rows.size(); ++k) write(rows[k].second);
+  return folder / recording.filename();
+}
+
+TEST_F(Replay, ATestOfManyHoursIsRefusedByNameAndTheNextIsConcluded) {
+  const std::string state = state_directory("hours").string();
+  const std::string too_long = among_rest(recordings()[0], folder_ / "hours of rest", 8.0);
+  const pid_t up = start({"sealwatch", "up", "--config", config(), "--state", state}, folder_ / "up.log");
+  Finished replayed;
+  for (int attempt = 0; attempt < 50 && replayed.status != 0; ++attempt) {  // until the services are up
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    replayed = run({"sealwatch", "replay", "--config", config(), "--quiet", too_long, recordings()[1]});
+  }
+  EXPECT_EQ(replayed.status, 0) << replayed.output;
+  const Finished status = run({"sealwatch", "status", "--config", config()});
+  EXPECT_THAT(status.output, ::testing::HasSubstr("the test could not be used: the test is 2.88e+04 s long"));
+  EXPECT_THAT(status.output, ::testing::Not(::testing::HasSubstr("set aside")));
+  const auto last = nlohmann::json::parse(run({"sealwatch", "status", "--config", config(), "--json"}).output);
+  const auto& asset = last["assets"]["XT03-MV2"];
+  EXPECT_EQ(asset["state_report"]["verdict"], "passed") << asset["state_report"].dump(1);
+  EXPECT_TRUE(asset["leakage_estimate"]["used_for_forecast"]) << asset["leakage_estimate"].dump(1);
+  EXPECT_EQ(stored_results("hours").at("state_detection").size(), 2U);
+
+  constexpr std::chrono::seconds kToStop{2};
+  constexpr std::chrono::seconds kOfABusyMachine{3};
+  const auto begin = std::chrono::steady_clock::now();
+  kill(up, SIGTERM);
+  waitpid(up, nullptr, 0);
+  EXPECT_EQ(processes_with(state), 0U);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, kToStop + kOfABusyMachine);
 }
 
 TEST_F(Replay, ToldToStopOrKilledItLeavesNoServiceBehind) {

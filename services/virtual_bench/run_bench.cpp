@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <csignal>
+#include <exception>
 #include <iostream>
 
 #include "services/common/core/build_version.hpp"
@@ -76,16 +77,11 @@ Status serve(Bus& bus, const Clock& clock, const Configuration& configuration, c
   return {};
 }
 
-}  // namespace
-
-int run_bench(int argc, const char* const* argv,
-              const std::function<Result<std::unique_ptr<Bus>>(const Configuration&)>& make_bus) {
-  auto arguments = parse(argc, argv);
-  if (!arguments) return arguments.error();
-  const Checked<Configuration> configuration = load_configuration(arguments->config, arguments->overrides);
+int run(Arguments& arguments, const BusMaker& make_bus) {
+  const Checked<Configuration> configuration = load_configuration(arguments.config, arguments.overrides);
   if (!configuration) return complain(combine(configuration.error()), kBadUsage);
   const SystemClock real;
-  const Result<UtcTime> start = arguments->start.empty() ? real.now() : parse_utc(arguments->start);
+  const Result<UtcTime> start = arguments.start.empty() ? real.now() : parse_utc(arguments.start);
   if (!start) return complain(start.error(), kBadUsage);
   if (const Status logging = start_logging(configuration->logging, "virtual_bench"); !logging)
     return complain(logging.error(), kBadUsage);
@@ -97,12 +93,25 @@ int run_bench(int argc, const char* const* argv,
       stop = 1;
       end_process_in(kServiceStops, kOk);
     });
-  arguments->actuator.installed = *start;
-  const AcceleratedClock clock(real, *start, arguments->acceleration);
-  const Status served = serve(**bus, clock, *configuration, arguments->actuator);
+  arguments.actuator.installed = *start;
+  const AcceleratedClock clock(real, *start, arguments.acceleration);
+  const Status served = serve(**bus, clock, *configuration, arguments.actuator);
+  return served ? kOk : complain(served.error(), kInternalFailure);
+}
+
+}  // namespace
+
+int run_bench(int argc, const char* const* argv, const BusMaker& make_bus) {
+  int status = kInternalFailure;
+  try {
+    auto arguments = parse(argc, argv);
+    status = arguments ? run(*arguments, make_bus) : arguments.error();
+  } catch (const std::exception& exception) {
+    complain(Error{{}, {}, {}, exception.what(), "this is a fault of the program: report it"}, kInternalFailure);
+  }
   stop_logging();
   keep_process();
-  return served ? kOk : complain(served.error(), kInternalFailure);
+  return status;
 }
 
 }  // namespace sealwatch::bench

@@ -9,8 +9,10 @@
 
 namespace sealwatch::bench {
 
-/// Exit status as a daemon's: 0 stopped by SIGTERM or SIGINT, 2 bad usage or configuration, 3 internal failure.
-[[nodiscard]] int run_bench(int argc, const char* const* argv,
-                            const std::function<Result<std::unique_ptr<Bus>>(const Configuration&)>& make_bus);
+using BusMaker = std::function<Result<std::unique_ptr<Bus>>(const Configuration&)>;
+
+/// Exit status as a daemon's: 0 stopped by SIGTERM or SIGINT, 2 bad usage or configuration, 3 internal failure. It
+/// throws nothing.
+[[nodiscard]] int run_bench(int argc, const char* const* argv, const BusMaker& make_bus);
 
 }  // namespace sealwatch::bench

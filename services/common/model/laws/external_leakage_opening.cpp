@@ -18,7 +18,7 @@ Law external_leakage_opening() {
           .closed_form = true,
           .parameters = {strength("G_o", "m3/(s Pa)", "flow per pressure beyond it",
                                   {.usual = 1e-13, .significant = 2e-14, .max = 1e-10}),
-                         shape("p_o", "Pa", "pressure at which it opens", {5e6, 1e7, 2e6}, 0.0, 5e7)},
+                         shape("p_o", "Pa", "pressure at which it opens", {2e6, 5e6, 1e7}, 0.0, 5e7)},
           .evaluate = &evaluate_external_leakage_opening,
           .roundings = {{"Pa", kOpening_Pa}}};
 }

@@ -22,13 +22,19 @@ struct Forbidden {
   double share = 0.0, allowed_share = 0.0;  ///< Rejected
 };
 
+/// A model without one law of another, from whose values it was fitted.
+struct WithoutLaw {
+  std::shared_ptr<const FittedModel> whole;
+  Trial fewer;
+};
+
 struct Naming {
   std::shared_ptr<const FittedModel> baseline;
-  Trial best;                     ///< effects may be empty
-  std::vector<Trial> trials;      ///< all that were refitted, the best among them
-  std::vector<Trial> fewer = {};  ///< models without one law of another (without_law)
-  Screening first;                ///< of the baseline
-  Screening last;                 ///< of the best model
+  Trial best;                          ///< effects may be empty
+  std::vector<Trial> trials;           ///< all that were refitted, the best among them
+  std::vector<WithoutLaw> fewer = {};  ///< see without_law
+  Screening first;                     ///< of the baseline
+  Screening last;                      ///< of the best model
   std::vector<Forbidden> forbidden = {};
   std::vector<std::string> remarks = {};              ///< what was not taken for a reason of computation
   std::shared_ptr<const FittedModel> looked_at = {};  ///< the model that was screened last,

@@ -132,26 +132,46 @@ std::ptrdiff_t known_values_in(const FittedModel& model) {
   return std::ranges::count_if(model.problem.shared, [](const Unknown& unknown) { return unknown.is_known(); });
 }
 
+// An asset that lacks a law of `whole`. Where it misses grossly after some steps, and `whole` does not, the law is needed:
+// the rest of its search would only tell how much.
+Result<FittedModel> fit_less(const AssetConfig& asset, const Data& data, const FittedModel& whole, int threads) {
+  constexpr int kSteps = 10;
+  Result<FittedModel> model = fit_model(asset, data, &whole, threads, kSteps);
+  if (!model || model->optimum.converged || (excess(whole) <= kGross && excess(*model) > kGross)) return model;
+  return continue_fit(*model, data, threads, kSearchIterations - kSteps);
+}
+
+// What was fitted already from the same values, wherever that ended, or converged from others; null: nothing.
+Trial* known_without(Naming& naming, const FittedModel& whole, const std::vector<Effect>& effects) {
+  Trial* known = nullptr;
+  const auto consider = [&](Trial& one) {
+    if (one.model->optimum.converged && same_effects(one.effects, effects) &&
+        known_values_in(*one.model) == known_values_in(whole) &&
+        (known == nullptr || one.model->misfit < known->model->misfit))
+      known = &one;
+  };
+  for (Trial& one : naming.trials) consider(one);
+  for (WithoutLaw& one : naming.fewer) {
+    if (one.whole.get() == &whole && same_effects(one.fewer.effects, effects)) return &one.fewer;
+    consider(one.fewer);
+  }
+  return known;
+}
+
 }  // namespace
 
 std::optional<Trial> without_law(Naming& naming, const Trial& trial, std::size_t slot, const Data& data, int threads) {
   Trial fewer{.effects = trial.effects, .model = nullptr};
   fewer.effects.erase(fewer.effects.begin() + static_cast<std::ptrdiff_t>(slot));
   if (fewer.effects.empty()) return Trial{{}, naming.baseline};
-  Trial* known = nullptr;
-  for (std::vector<Trial>* trials : {&naming.trials, &naming.fewer})
-    for (Trial& one : *trials)
-      if (one.model->optimum.converged && same_effects(one.effects, fewer.effects) &&
-          known_values_in(*one.model) == known_values_in(*trial.model) &&
-          (known == nullptr || one.model->misfit < known->model->misfit))
-        known = &one;
-  if (known != nullptr) return *known = with_derivatives(*known, data, threads);
+  if (Trial* known = known_without(naming, *trial.model, fewer.effects))
+    return *known = with_derivatives(*known, data, threads);
   AssetConfig asset = trial.model->asset;
   asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(trial.effects.size() - slot));
-  Result<FittedModel> model = fit_model(asset, data, trial.model.get(), threads);
+  Result<FittedModel> model = fit_less(asset, data, *trial.model, threads);
   if (!model) return std::nullopt;
   fewer.model = std::make_shared<const FittedModel>(std::move(*model));
-  naming.fewer.push_back(fewer);
+  if (!passed(data.deadline)) naming.fewer.push_back({trial.model, fewer});
   return fewer;
 }
 

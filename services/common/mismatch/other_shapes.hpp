@@ -24,8 +24,8 @@ void another_law_for_each(Naming& naming, const Data& data, const ExplainOptions
 /// each law of the element is asked for what they do together, and stays where several are not worth another law.
 void one_law_for_several(Naming& naming, const Data& data, const ExplainOptions& options);
 
-/// A trial without one of its laws: as it was fitted already, where that converged, else fitted from the trial, and kept.
-/// None where that cannot be simulated or time is up.
+/// A trial without one of its laws: as it was fitted already, from that trial or to convergence, else fitted from the
+/// trial, and kept. None where that cannot be simulated or time is up.
 [[nodiscard]] std::optional<Trial> without_law(Naming& naming, const Trial& trial, std::size_t slot, const Data& data,
                                                int threads);
 

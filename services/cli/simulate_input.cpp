@@ -82,7 +82,7 @@ Status simulate_one(const Recording& input, const AssetConfig& asset, const Plan
                       .value = {},
                       .rule = "is there already",
                       .advice = "give another directory with --out"});
-  const Status written =
+  Status written =
       write_recording_csv(simulated_recording(input, **simulation, outputs->values, asset, noise), file.string());
   if (!written) return written;
   std::printf("%s: %td samples of %zu outputs in %zu steps%s\n", file.string().c_str(), outputs->values.rows(),

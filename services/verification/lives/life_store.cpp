@@ -56,7 +56,7 @@ std::string first_difference(const std::string& ours, const std::string& theirs)
     if (!more_a && !more_b) return {};
     if (!more_a) one = "(nothing)";
     if (!more_b) other = "(nothing)";
-    if (one != other) return "'" + one + "' against '" + other + "'";
+    if (one != other) return std::string("'").append(one).append("' against '").append(other).append("'");
   }
 }
 

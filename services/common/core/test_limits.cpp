@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "services/common/text/format.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
 double largest_plausible(double range_min, double range_max) {
@@ -26,17 +27,18 @@ std::optional<std::string> too_many_numbers(double numbers, const TestLimits& li
 
 std::optional<std::string> too_long(double duration_s, const TestLimits& limits) {
   if (duration_s <= limits.longest_s) return std::nullopt;
-  return text::format("{:.4g} s long, more than the {:.0f} s that one test may take", duration_s, limits.longest_s);
+  return text::format("{} s long, more than the {:.0f} s that one test may take", text::number(duration_s, 4),
+                      limits.longest_s);
 }
 
 std::optional<std::string> too_long_to_simulate(double duration_s, double longest_step_s, const TestLimits& limits) {
   const double steps = duration_s / longest_step_s;
   if (steps <= limits.most_steps_of_simulation) return std::nullopt;
   return text::format(
-      "the test is {:.4g} s long: a simulation takes {:.3g} steps of {:.3g} s, more than the {:.0f} that it may "
+      "the test is {} s long: a simulation takes {} steps of {:.3g} s, more than the {:.0f} that it may "
       "take in a service; cut the recording to the stroke and some seconds around it, record a slow plant with "
       "rows further apart, or use 'sealwatch fit', which has no such limit",
-      duration_s, steps, longest_step_s, limits.most_steps_of_simulation);
+      text::number(duration_s, 4), text::number(steps), longest_step_s, limits.most_steps_of_simulation);
 }
 
 std::optional<std::string> too_fast(double interval_s, const TestLimits& limits) {

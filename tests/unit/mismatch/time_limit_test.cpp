@@ -29,6 +29,10 @@ AssetConfig with_a_leak() {
   return truth;
 }
 
+std::shared_ptr<const FittedModel> fitted(const AssetConfig& asset, const Data& data) {
+  return std::make_shared<const FittedModel>(fit_model(asset, data, nullptr, 2).value());
+}
+
 std::vector<Recording> two_tests() {
   const AssetConfig truth = with_a_leak();
   return {recording_of(truth, 0.8), recording_of(truth, 1.2)};
@@ -113,13 +117,10 @@ TEST(TimeLimit, ALawThatWasFittedIsKept) {
   Data data = data_of(recordings);
   Deadline deadline;
   data.deadline = &deadline;
-  const auto fitted = [&](const AssetConfig& asset) {
-    return std::make_shared<const FittedModel>(fit_model(asset, data, nullptr, 2).value());
-  };
   AssetConfig leaking = with_a_leak();
   leaking.physics.front().parameters.at("G").estimate = true;
-  const Trial law{{{find_law("external_leakage", {"G"}).value(), "chamber_a"}}, fitted(leaking)};
-  Naming naming{.baseline = fitted(actuator()), .best = {}, .trials = {}, .first = {}, .last = {}};
+  const Trial law{{{find_law("external_leakage", {"G"}).value(), "chamber_a"}}, fitted(leaking, data)};
+  Naming naming{.baseline = fitted(actuator(), data), .best = {}, .trials = {}, .first = {}, .last = {}};
   naming.best = {{}, naming.baseline};
   ASSERT_LT(law.model->misfit, 0.1 * naming.baseline->misfit);
   deadline.set_in(-1.0);
@@ -136,13 +137,10 @@ TEST(TimeLimit, WhatWasFoundBesideAValueIsNotLost) {
   Deadline deadline;
   data.deadline = &deadline;
   data.fixed = {{.name = "A_C", .value = actuator().parameters.at("A_C").value, .standard_deviation = 1e-5}};
-  const auto fitted = [&](const AssetConfig& asset) {
-    return std::make_shared<const FittedModel>(fit_model(asset, data, nullptr, 2).value());
-  };
-  const auto baseline = fitted(actuator());
+  const auto baseline = fitted(actuator(), data);
   AssetConfig leaking = with_free_value(with_a_leak(), "A_C");
   leaking.physics.front().parameters.at("G").estimate = true;
-  const Trial found{{{find_law("external_leakage", {"G"}).value(), "chamber_a"}}, fitted(leaking)};
+  const Trial found{{{find_law("external_leakage", {"G"}).value(), "chamber_a"}}, fitted(leaking, data)};
   const Screening known = screen(*baseline, data, {}).value();
   deadline.set_in(-1.0);
   EXPECT_FALSE(name_effects(baseline, data, {}, {}, found, &known));
@@ -154,13 +152,10 @@ TEST(TimeLimit, WhatASearchSetsOutFromIsNotLost) {
   Data data = data_of(recordings);
   Deadline deadline;
   data.deadline = &deadline;
-  const auto fitted = [&](const AssetConfig& asset) {
-    return std::make_shared<const FittedModel>(fit_model(asset, data, nullptr, 2).value());
-  };
-  const auto baseline = fitted(actuator());
+  const auto baseline = fitted(actuator(), data);
   AssetConfig leaking = with_a_leak();
   leaking.physics.front().parameters.at("G").estimate = true;
-  const Trial found{{{find_law("external_leakage", {"G"}).value(), "chamber_a"}}, fitted(leaking)};
+  const Trial found{{{find_law("external_leakage", {"G"}).value(), "chamber_a"}}, fitted(leaking, data)};
   const Screening known = screen(*baseline, data, {}).value();
   deadline.set_in(1e-2);  // the screening takes longer, what is before it does not
   const auto naming = name_effects(baseline, data, {}, {}, found, &known);

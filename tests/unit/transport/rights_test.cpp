@@ -103,7 +103,8 @@ TEST(RightToRetract, HoldsWhereTheSettingsOfCycloneHaveSecurity) {
   EXPECT_FALSE(transport::is_secured(configuration));
   ::setenv("CYCLONEDDS_URI", ("file://" + ::testing::TempDir()).c_str(), 1);
   EXPECT_FALSE(transport::is_secured(configuration)) << "a directory cannot be read";
-  EXPECT_THAT(transport::Participant::join(configuration).error().describe(), HasSubstr("is a directory"));
+  const auto joined = transport::Participant::join(configuration);
+  EXPECT_THAT(joined ? "joined" : joined.error().describe(), HasSubstr("is a directory"));
   ::setenv("CYCLONEDDS_URI", kept.c_str(), 1);
 }
 

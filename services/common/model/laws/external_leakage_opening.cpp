@@ -16,7 +16,7 @@ Law external_leakage_opening() {
           .energy = "G_o >= 0: oil leaks from the higher pressure to the lower",
           .source = kClosedFormSource,
           .closed_form = true,
-          .parameters = {strength("G_o", "m3/(s Pa)", "flow per pressure beyond it",
+          .parameters = {strength("G_o", "m3/(s Pa)", "flow per pressure beyond the opening",
                                   {.usual = 1e-13, .significant = 2e-14, .max = 1e-10}),
                          shape("p_o", "Pa", "pressure at which it opens", {2e6, 5e6, 1e7}, 0.0, 5e7)},
           .evaluate = &evaluate_external_leakage_opening,

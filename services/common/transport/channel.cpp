@@ -98,19 +98,17 @@ Status Channel::subscribe(Inbox& inbox) {
   const dds_entity_t reader = dds_create_reader(
       participant_, topic_, reader_qos(qos_, slow_reader_, type_->reader_limit).get(), listener.get());
   if (reader < 0) return dds_failure("reader of topic " + type_->name, reader);
-  const std::lock_guard lock(inbox.mutex);
+  const std::lock_guard taking(taking_);
   reader_ = reader;
-  take();  // what came before the call returned
+  take_all();  // what came before the call returned
   return {};
 }
 
 void Channel::arrived(dds_entity_t reader) {
-  if (takes_at_once_) {
-    const std::lock_guard lock(inbox_->mutex);
-    reader_ = reader;
-    take();
-  } else {
-    const std::lock_guard gate(inbox_->mutex);  // not while samples are taken
+  {
+    const std::lock_guard taking(taking_);  // what takes when asked is not disturbed either
+    if (!subscribed()) reader_ = reader;    // dds_create_reader is not through yet
+    if (takes_at_once_) take_all();
   }
   inbox_->signal.notify();
 }
@@ -126,20 +124,20 @@ bool Channel::take_batch(std::vector<Stamped>& taken) const {
     if (!infos[k].valid_data) continue;
     if (auto item = decode(*sample); item && may_say(*item))
       taken.push_back(
-          {.published = infos[k].source_timestamp, .writer = infos[k].publication_handle, .item = std::move(*item)});
+          {.published = infos[k].source_timestamp, .writer = infos[k].publication_handle, .item = std::move(item)});
   }
   return count == static_cast<dds_return_t>(most);
 }
 
 /// What is no message is passed over, as DDS does with what it cannot read. Services, which count, hear of it.
-std::optional<BusItem> Channel::decode(const ddsi_serdata& sample) const {
+std::unique_ptr<BusItem> Channel::decode(const ddsi_serdata& sample) const {
   ddsrt_iovec_t bytes;
   ddsi_serdata* const held = ddsi_serdata_to_ser_ref(&sample, 0, ddsi_serdata_size(&sample), &bytes);
   auto item = type_->decode({static_cast<const std::byte*>(bytes.iov_base), bytes.iov_len});
   ddsi_serdata_to_ser_unref(held, &bytes);
   const auto* message = item ? std::get_if<Message>(&*item) : nullptr;
   const bool is_unreadable = message != nullptr && header_of(*message).message_id.starts_with(kUnreadableMessage);
-  return is_unreadable && slow_reader_ == SlowReader::loses_oldest ? std::nullopt : item;
+  return is_unreadable && slow_reader_ == SlowReader::loses_oldest ? nullptr : std::move(item);
 }
 
 /// A retraction on the topic of all other events was sent without the right to retract, or by a program that knows of no
@@ -155,14 +153,28 @@ bool Channel::may_say(const BusItem& item) const {
 }
 
 void Channel::take() {
-  const auto limit = static_cast<std::size_t>(type_->reader_limit);
+  const std::lock_guard taking(taking_);
+  take_all();
+}
+
+bool Channel::inbox_is_full(std::chrono::steady_clock::time_point now) const {
+  const std::lock_guard lock(inbox_->mutex);
+  return inbox_->is_full(static_cast<std::size_t>(type_ - topic_types().data()),
+                         static_cast<std::size_t>(type_->reader_limit), now);
+}
+
+void Channel::take_all() {
   const auto now = std::chrono::steady_clock::now();
-  if (inbox_->is_full(static_cast<std::size_t>(type_ - topic_types().data()), limit, now)) return;
+  left_behind_ = inbox_is_full(now);
+  if (left_behind_) return;
   std::vector<Stamped> taken;
   while (take_batch(taken)) {
   }
+  if (taken.empty()) return;
   std::ranges::stable_sort(taken, {}, &Stamped::published);
-  for (Stamped& one : taken) inbox_->put(one.writer, std::move(one.item), limit, now);
+  const std::lock_guard lock(inbox_->mutex);
+  for (Stamped& one : taken)
+    inbox_->put(one.writer, std::move(one.item), static_cast<std::size_t>(type_->reader_limit), now);
 }
 
 Status Channel::open_writer() {

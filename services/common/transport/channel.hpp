@@ -8,10 +8,14 @@
 // Order. A reader of a keyed topic gives its samples asset by asset, not as they were sent. So everything that is there
 // is taken at once and put in order of the writers' time stamps, which Channel::write makes strictly increasing. For
 // "everything" to have an end, samples must not come in meanwhile: the listener, which Cyclone calls after it stored a
-// sample and before it stores the next, has to pass the inbox's mutex, which is held while samples are taken.
+// sample and before it stores the next, has to pass the channel's mutex, which is held while samples are taken. The
+// inbox's is held no longer than it takes to put them in: who reads from it does not wait while they are decoded.
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -53,8 +57,10 @@ class Channel {
   [[nodiscard]] Status subscribe(Inbox& inbox);
   /// A sample was stored: called by DDS's threads.
   void arrived(dds_entity_t reader);
-  /// Moves what waits in DDS to the inbox, in the order of publishing. The inbox's mutex must be held.
+  /// Moves what waits in DDS to the inbox, in the order of publishing. No mutex may be held.
   void take();
+  /// Whether the inbox was full when last looked at: what waits in DDS then is taken when there is room again.
+  [[nodiscard]] bool left_behind() const { return left_behind_; }
 
   /// Makes the writer, which readers find from now on.
   [[nodiscard]] Status open_writer();
@@ -68,11 +74,15 @@ class Channel {
   struct Stamped {
     dds_time_t published;
     Inbox::Writer writer;
-    BusItem item;
+    std::unique_ptr<BusItem> item;
   };
+  /// `taking_` must be held.
+  void take_all();
+  /// Whether nothing more should be taken now.
+  [[nodiscard]] bool inbox_is_full(std::chrono::steady_clock::time_point now) const;
   /// Takes one batch; whether there may be more.
   bool take_batch(std::vector<Stamped>& taken) const;
-  [[nodiscard]] std::optional<BusItem> decode(const ddsi_serdata& sample) const;
+  [[nodiscard]] std::unique_ptr<BusItem> decode(const ddsi_serdata& sample) const;
   /// Whether who may write this topic may say that.
   [[nodiscard]] bool may_say(const BusItem& item) const;
 
@@ -87,6 +97,8 @@ class Channel {
   dds_entity_t writer_ = 0;
   dds_time_t last_written_ = 0;
   Inbox* inbox_ = nullptr;
+  std::mutex taking_;  ///< held while samples are taken: by DDS's thread or by who receives
+  std::atomic<bool> left_behind_ = false;
 };
 
 }  // namespace sealwatch::transport

@@ -1,6 +1,7 @@
 #include "services/common/transport/dds_bus.hpp"
 
 #include <algorithm>
+#include <deque>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -25,7 +26,6 @@ class CycloneBus final : public DdsBus {
  public:
   CycloneBus(transport::Participant participant, const Configuration& configuration, SlowReader slow_reader)
       : participant_(std::move(participant)) {
-    channels_.reserve(transport::kTopicCount);  // DDS's listeners know them by address
     for (const transport::TopicType& type : transport::topic_types()) {
       const auto overridden = configuration.topics.find(type.name);
       const TopicQos qos = overridden == configuration.topics.end() ? type.qos : overridden->second;
@@ -105,13 +105,19 @@ class CycloneBus final : public DdsBus {
 
  private:
   std::vector<BusItem> take(std::size_t most) {
-    const std::lock_guard lock(inbox_.mutex);
-    const bool all = inbox_.empty();  // what DDS keeps for a client it goes on thinning out until all is asked for
+    // What DDS keeps for a client it goes on thinning out until all is asked for.
+    const bool all = is_empty();
     for (Channel& channel : channels_)
-      if (channel.subscribed() && (all || channel.takes_at_once())) channel.take();
+      if (channel.subscribed() && (channel.takes_at_once() ? channel.left_behind() : all)) channel.take();
+    const std::lock_guard lock(inbox_.mutex);
     std::vector<BusItem> taken = inbox_.take(most, Clock::now());
     has_more_ = inbox_.has_more();
     return taken;
+  }
+
+  [[nodiscard]] bool is_empty() {
+    const std::lock_guard lock(inbox_.mutex);
+    return inbox_.empty();
   }
 
   [[nodiscard]] Clock::duration longest_wait() {
@@ -121,7 +127,7 @@ class CycloneBus final : public DdsBus {
   }
 
   transport::Inbox inbox_;         // both outlive the participant,
-  std::vector<Channel> channels_;  // whose listeners use them
+  std::deque<Channel> channels_;  // whose listeners use them, by their addresses
   transport::Participant participant_;
   bool has_more_ = false;  ///< after the last take
 };

@@ -80,7 +80,9 @@ class FromCdr {
       at_ += number * sizeof(Item);
     } else {
       delimited([&] {
-        for (std::size_t left = count(); good_ && left > 0; --left) take(items.emplace_back());
+        std::size_t left = count();
+        items.reserve(std::min(left, kMostReserved));
+        for (; good_ && left > 0; --left) take(items.emplace_back());
       });
     }
   }
@@ -116,6 +118,8 @@ class FromCdr {
   void fail() { good_ = false; }
 
   static constexpr std::size_t kLargestAlignment = 4;
+  /// Whatever the message says how many there are: what it does not hold costs nothing.
+  static constexpr std::size_t kMostReserved = 32;
   std::span<const std::byte> bytes_;
   std::size_t at_ = 0;
   std::size_t end_;

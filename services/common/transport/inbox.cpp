@@ -39,11 +39,11 @@ bool comes_again(const BusItem& item) {
 }
 
 /// In the place of that writer's earlier word about the same service.
-bool replaces(std::deque<BusItem>* line, BusItem& item) {
-  const auto* status = std::get_if<ServiceStatus>(&item);
+bool replaces(std::deque<std::unique_ptr<BusItem>>* line, std::unique_ptr<BusItem>& item) {
+  const auto* status = std::get_if<ServiceStatus>(item.get());
   if (status == nullptr || line == nullptr) return false;
-  for (BusItem& earlier : *line)
-    if (std::get<ServiceStatus>(earlier).service == status->service) return earlier = std::move(item), true;
+  for (std::unique_ptr<BusItem>& earlier : *line)
+    if (std::get<ServiceStatus>(*earlier).service == status->service) return earlier = std::move(item), true;
   return false;
 }
 
@@ -59,7 +59,7 @@ Inbox::Line* Inbox::Queue::find(const std::string& line) {
   return found == lines_.end() ? nullptr : &found->second;
 }
 
-void Inbox::Queue::add(const std::string& line, BusItem item) {
+void Inbox::Queue::add(const std::string& line, std::unique_ptr<BusItem> item) {
   const auto [place, is_new] = lines_.try_emplace(line);
   place->second.push_back(std::move(item));
   ++size_;
@@ -68,17 +68,17 @@ void Inbox::Queue::add(const std::string& line, BusItem item) {
 
 bool Inbox::Queue::turn_to(const std::function<bool(const BusItem&)>& may_be_taken) {
   for (std::size_t k = 0; k < turns_.size(); ++k) {
-    if (may_be_taken(lines_.at(turns_.front()).front())) return true;
+    if (may_be_taken(*lines_.at(turns_.front()).front())) return true;
     turns_.push_back(std::move(turns_.front()));
     turns_.pop_front();
   }
   return false;
 }
 
-BusItem Inbox::Queue::take() {
+std::unique_ptr<BusItem> Inbox::Queue::take() {
   const auto place = lines_.find(turns_.front());
   turns_.pop_front();
-  BusItem item = std::move(place->second.front());
+  std::unique_ptr<BusItem> item = std::move(place->second.front());
   place->second.pop_front();
   --size_;
   if (place->second.empty())
@@ -141,22 +141,22 @@ void Inbox::note_heard(Writer writer, const BusItem& item, std::size_t topic, Ti
   if (!comes_again(item)) note(heard_assets_[topic], asset_of(std::get<Message>(item)), now);
 }
 
-void Inbox::put(Writer writer, BusItem item, std::size_t limit, Time now) {
-  const std::size_t topic = index_of(item);
-  const Key key{is_strangers(item), writer};
-  if (key.first && strangers_waiting_ >= kMostOfStrangers) return drop(item);
-  if (!key.first) note_heard(writer, item, topic, now);
+void Inbox::put(Writer writer, std::unique_ptr<BusItem> item, std::size_t limit, Time now) {
+  const std::size_t topic = index_of(*item);
+  const Key key{is_strangers(*item), writer};
+  if (key.first && strangers_waiting_ >= kMostOfStrangers) return drop(*item);
+  if (!key.first) note_heard(writer, *item, topic, now);
   const auto [place, is_new] = queues_.try_emplace(key);
   Queue& queue = place->second;
   if (is_new) ++(key.first ? strangers_queues_ : writers_[topic]);
-  const std::string line = key.first ? std::string() : line_of(item);
+  const std::string line = key.first ? std::string() : line_of(*item);
   if (replaces(queue.find(line), item)) return;
-  const bool again = comes_again(item);
+  const bool again = comes_again(*item);
   const bool is_left = !key.first && again && is_left_out(queue, topic, limit);
   const std::size_t most = std::max(2 * limit, assets_.size());  // one block of each, however large the fleet
   const bool is_flood = !key.first && !again && is_beyond_share(queue, line, topic, most) && !is_alone(topic, now);
   if (is_left || is_flood) {
-    if (is_flood) drop(item);
+    if (is_flood) drop(*item);
     if (!is_new) return;
     --writers_[topic];  // no queue is empty
     queues_.erase(place);
@@ -168,11 +168,11 @@ void Inbox::put(Writer writer, BusItem item, std::size_t limit, Time now) {
   if (is_new) turns_.push_back(key);
 }
 
-BusItem Inbox::take_one(const Key& key) {
+std::unique_ptr<BusItem> Inbox::take_one(const Key& key) {
   const auto place = queues_.find(key);
   const std::size_t lines = place->second.lines();
-  BusItem item = place->second.take();
-  const std::size_t topic = index_of(item);
+  std::unique_ptr<BusItem> item = place->second.take();
+  const std::size_t topic = index_of(*item);
   if (!key.first) lines_[topic] -= lines - place->second.lines();
   --(key.first ? strangers_waiting_ : waiting_[topic]);
   if (place->second.empty()) {
@@ -216,7 +216,7 @@ std::vector<BusItem> Inbox::take(std::size_t most, Time now) {
       continue;
     }
     if (key.first) strangers_may_ -= 1.0;
-    taken.push_back(take_one(key));
+    taken.push_back(std::move(*take_one(key)));
   }
   turns_.insert(turns_.end(), later.begin(), later.end());
   return taken;

@@ -23,6 +23,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <string>
@@ -60,7 +61,7 @@ class Inbox {
   /// Whether nothing more of that topic should be taken from DDS.
   [[nodiscard]] bool is_full(std::size_t topic, std::size_t limit, Time now);
   /// Adds it, or leaves it out.
-  void put(Writer writer, BusItem item, std::size_t limit, Time now);
+  void put(Writer writer, std::unique_ptr<BusItem> item, std::size_t limit, Time now);
   /// At most `most`, writers in turn; those of one writer, of raw samples those of one of its assets, in the order in
   /// which they came. Fewer where more would be beyond an asset's share: at least one, where any may be taken.
   [[nodiscard]] std::vector<BusItem> take(std::size_t most, Time now);
@@ -69,7 +70,7 @@ class Inbox {
 
  private:
   using Key = std::pair<bool, Writer>;  ///< whether it is a stranger's
-  using Line = std::deque<BusItem>;     ///< in the order in which they came
+  using Line = std::deque<std::unique_ptr<BusItem>>;  ///< in the order in which they came
   /// What waits of one writer, in lines that take turns.
   class Queue {
    public:
@@ -78,11 +79,11 @@ class Inbox {
     [[nodiscard]] std::size_t lines() const { return turns_.size(); }
     [[nodiscard]] std::size_t size_of(const std::string& line) const;
     [[nodiscard]] Line* find(const std::string& line);
-    void add(const std::string& line, BusItem item);
+    void add(const std::string& line, std::unique_ptr<BusItem> item);
     /// Turns to the next line whose first may be taken; false where there is none.
     [[nodiscard]] bool turn_to(const std::function<bool(const BusItem&)>& may_be_taken);
     /// The first of the line whose turn it is.
-    [[nodiscard]] BusItem take();
+    [[nodiscard]] std::unique_ptr<BusItem> take();
 
    private:
     std::map<std::string, Line> lines_;  ///< none is empty
@@ -100,7 +101,7 @@ class Inbox {
   [[nodiscard]] bool is_alone(std::size_t topic, Time now);
   void note_heard(Writer writer, const BusItem& item, std::size_t topic, Time now);
   void drop(const BusItem& item);
-  [[nodiscard]] BusItem take_one(const Key& key);
+  [[nodiscard]] std::unique_ptr<BusItem> take_one(const Key& key);
   /// How many not numbered messages of one asset make its share of `most`.
   [[nodiscard]] std::size_t share_of_asset(std::size_t topic, std::size_t most, Time now);
   using Shares = std::map<std::pair<std::size_t, std::string>, std::size_t>;  ///< taken, by topic and asset

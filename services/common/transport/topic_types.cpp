@@ -60,30 +60,34 @@ bool is_delimited_cdr2(std::span<const std::byte> bytes) {
 
 /// Whose it is, where that could be read: its stream goes on, and it is told of.
 template <class T>
-std::optional<BusItem> unreadable(const T& read) {
+std::unique_ptr<BusItem> unreadable(const T& read) {
   if constexpr (std::is_constructible_v<Message, T>) {
-    if (read.asset_id.empty() && read.header.writer_id.empty()) return std::nullopt;
+    if (read.asset_id.empty() && read.header.writer_id.empty()) return nullptr;
     T message;
     message.asset_id = read.asset_id;
     message.header.message_id = std::string(kUnreadableMessage) + read.header.message_id;
     message.header.writer_id = read.header.writer_id;
     message.header.stream_sequence = read.header.stream_sequence;
     message.header.writer_started_ns = read.header.writer_started_ns;
-    return Message(std::move(message));
+    return std::make_unique<BusItem>(Message(std::move(message)));
   } else {
-    return std::nullopt;
+    return nullptr;
   }
 }
 
 template <class T>
-std::optional<BusItem> decode(std::span<const std::byte> bytes) {
-  T message;
-  if (!is_delimited_cdr2(bytes)) return std::nullopt;
-  if (!FromCdr(bytes.subspan(kEncodingSize)).read(message)) return unreadable(message);
-  if constexpr (std::is_constructible_v<Message, T&&>)
-    return Message(std::move(message));
-  else
-    return message;
+std::unique_ptr<BusItem> decode(std::span<const std::byte> bytes) {
+  if (!is_delimited_cdr2(bytes)) return nullptr;
+  std::unique_ptr<BusItem> item;
+  T* content = nullptr;  // read where it stays: a block of samples is large and costly to move
+  if constexpr (std::is_constructible_v<Message, T&&>) {
+    item = std::make_unique<BusItem>(Message(T{}));
+    content = &std::get<T>(std::get<Message>(*item));
+  } else {
+    item = std::make_unique<BusItem>(T{});
+    content = &std::get<T>(*item);
+  }
+  return FromCdr(bytes.subspan(kEncodingSize)).read(*content) ? std::move(item) : unreadable(*content);
 }
 
 /// Cyclone passes over a message with an enumerator that the IDL does not have, unseen: its reader would ask for it for

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <memory_resource>
 #include <optional>
 #include <span>
@@ -22,7 +23,7 @@ struct TopicType {
   const dds_topic_descriptor_t* descriptor = nullptr;
   /// None where the bytes are no such message; what only its header tells of is one that says so (message/outside.hpp).
   /// They are Cyclone's, with the four that name their encoding.
-  std::optional<BusItem> (*decode)(std::span<const std::byte> bytes) = nullptr;
+  std::unique_ptr<BusItem> (*decode)(std::span<const std::byte> bytes) = nullptr;  ///< null: no message
   TopicQos qos;  ///< default; a Configuration may override it
   /// Messages that wait for a reader's owner (inbox.hpp), and how many are taken from DDS at once. Of bulky topics
   /// (windows of samples, up to about 1 MB each) few wait.

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # sample_throughput.sh SAMPLE_THROUGHPUT: our blocks of 1000 doubles against ddsperf with the same payload, process to process on
-# loopback, in turns; the medians' ratio must be at least 0.5. Ours carries header, channel names and units besides, and is
+# loopback, in turns; the median of the rounds' ratios must be at least 0.5. Ours carries header, channel names and units besides, and is
 # decoded into RawSamples; ddsperf's payload is one octet sequence that it only counts.
 set -euo pipefail
 program=$1
-seconds=3 rounds=3 payload=8000 goal=0.5
+seconds=2 rounds=7 payload=8000 goal=0.5
 domain=97  # of its own: what others multicast in domain 0 would be received here too
 
 export CYCLONEDDS_URI="<CycloneDDS><Domain Id=\"any\"><General><Interfaces><NetworkInterface name=\"lo\" multicast=\"true\"/>\
@@ -29,13 +29,11 @@ theirs() {
   sed -n 's/.* rate \([0-9.]*\) kS\/s.*/\1/p' "$scratch/ddsperf" | sort -n | awk '{r[NR]=$1} END {print 1000*r[int((NR+1)/2)]}'
 }
 
-median() { sort -n | awk '{r[NR]=$1} END {print r[int((NR+1)/2)]}'; }
-
-for _ in $(seq $rounds); do
-  ours >>"$scratch/ours"
-  theirs >>"$scratch/theirs"
-done
-awk -v ours="$(median <"$scratch/ours")" -v theirs="$(median <"$scratch/theirs")" -v goal=$goal -v payload=$payload 'BEGIN {
-  printf "sample transport: %.0f blocks/s (%.0f MB/s); ddsperf, %d octets: %.0f/s; ratio %.2f (goal %.1f)\n",
-         ours, ours * payload * 1e-6, payload, theirs, ours / theirs, goal
-  exit !(ours / theirs >= goal) }'
+# A machine that others share is fast for some seconds and slow for some: each round has a ratio of its own.
+for _ in $(seq $rounds); do echo "$(ours) $(theirs)"; done |
+  awk '{ print $1 / $2, $1, $2 }' | sort -n >"$scratch/rounds"
+awk -v goal=$goal -v payload=$payload '{ ratio[NR] = $1; ours[NR] = $2; theirs[NR] = $3 } END {
+  k = int((NR + 1) / 2)
+  printf "sample transport: %.0f blocks/s (%.0f MB/s); ddsperf, %d octets: %.0f/s; ratio %.2f, %d rounds %.2f to %.2f (goal %.1f)\n",
+         ours[k], ours[k] * payload * 1e-6, payload, theirs[k], ratio[k], NR, ratio[1], ratio[NR], goal
+  exit !(ratio[k] >= goal) }' "$scratch/rounds"

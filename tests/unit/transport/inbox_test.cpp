@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <memory>
 #include <set>
 
 namespace sealwatch::transport {
@@ -18,14 +19,14 @@ constexpr std::size_t kLimit = 512;
 constexpr Inbox::Time kNow = Inbox::Time(std::chrono::hours(1));
 constexpr auto kRaw = static_cast<std::size_t>(Topic::raw_samples);
 
-BusItem block(const std::string& asset_id, std::uint64_t number, const std::string& writer_id = {}) {
+std::unique_ptr<BusItem> block(const std::string& asset_id, std::uint64_t number, const std::string& writer_id = {}) {
   RawSamples raw;
   raw.asset_id = asset_id;
   raw.source_id = "sender of " + asset_id;
   raw.block_number = number;
   raw.header.writer_id = writer_id;
   raw.header.stream_sequence = writer_id.empty() ? 0 : number;
-  return Message(raw);
+  return std::make_unique<BusItem>(Message(raw));
 }
 
 std::uint64_t number_of(const BusItem& item) { return std::get<RawSamples>(std::get<Message>(item)).block_number; }
@@ -194,8 +195,8 @@ TEST_F(InboxTest, OfNumberedMessagesSendersShareHoweverManyAssetsAnotherHas) {
 TEST_F(InboxTest, AConfiguredSenderThatInventsAssetsHasTheShareOfOne) {
   inbox_.put(2, block("B", 1), kLimit, kNow);
   for (std::uint64_t k = 1; k <= 20 * kLimit; ++k) {
-    BusItem invented = block("run " + std::to_string(k), 1);
-    std::get<RawSamples>(std::get<Message>(invented)).source_id = "sender of CONFIGURED";
+    auto invented = block("run " + std::to_string(k), 1);
+    std::get<RawSamples>(std::get<Message>(*invented)).source_id = "sender of CONFIGURED";
     inbox_.put(1, std::move(invented), kLimit, kNow);
   }
   ASSERT_THAT(inbox_.floods(), SizeIs(1));
@@ -269,7 +270,7 @@ TEST_F(InboxTest, AStrangersHeartbeatsHideNoServicesOwn) {
     status.service = "data_acquisition";
     status.writer_id = writer_id;
     status.started_ns = started_ns;
-    return BusItem(status);
+    return std::make_unique<BusItem>(status);
   };
   inbox_.put(1, beat("itself", 1), kLimit, kNow);
   for (int k = 0; k < 100'000; ++k) inbox_.put(2, beat("stranger " + std::to_string(k), k), kLimit, kNow);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <deque>
 #include <fstream>
 #include <thread>
 
@@ -37,19 +38,19 @@ MaintenanceEvent event(std::string_view kind, const std::string& id) {
 /// Ids of what a service takes when all kinds of events are written to both topics.
 std::vector<std::string> taken(const Configuration& configuration, Rights rights) {
   transport::Inbox inbox;  // outlives the participants, as the channels do
-  std::vector<Channel> readers;
-  std::vector<Channel> writers;
-  readers.reserve(2);
+  std::deque<Channel> readers;
+  std::deque<Channel> writers;
   const auto reading = transport::Participant::join(configuration);
   const auto writing = transport::Participant::join(configuration);
-  const auto channel = [](const transport::Participant& participant, std::size_t index, Rights of_reader) {
+  const auto add = [](std::deque<Channel>& channels, const transport::Participant& participant, std::size_t index,
+                      Rights of_reader) {
     const transport::TopicType& type = transport::topic_types()[index];
-    return Channel(participant.handle(), type, type.qos, SlowReader::asks_again, of_reader);
+    channels.emplace_back(participant.handle(), type, type.qos, SlowReader::asks_again, of_reader);
   };
   for (const std::size_t index : {kEvents, kRetractions}) {
-    readers.push_back(channel(*reading, index, rights));
+    add(readers, *reading, index, rights);
     EXPECT_TRUE(readers.back().subscribe(inbox));
-    writers.push_back(channel(*writing, index, Rights::none));
+    add(writers, *writing, index, Rights::none);
   }
   int number = 0;
   const auto id_of = [&number](std::string_view kind) {

@@ -128,7 +128,7 @@ Status LayerRunner::run(const std::atomic<bool>& stop) {
 }
 
 Status LayerRunner::step(std::chrono::milliseconds timeout) {
-  std::this_thread::sleep_until(last_work_ + options_.batch_pause);
+  if (!full_since_) std::this_thread::sleep_until(last_work_ + options_.batch_pause);
   timeout = until_looking_back(timeout);
   if (lanes_.on_trial()) timeout = std::min(timeout, kTrialLook);
   if (!outbox_.empty() || !resends_.empty()) timeout = std::min(timeout, Outbox::kShortestPause);

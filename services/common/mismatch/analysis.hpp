@@ -61,6 +61,9 @@ class Analysis {
   // known already.
   Status look_from(std::optional<Trial> from);
   // Sensors that were off beside what differs are so in common; also where the time to search is over.
+  /// Whether one value of the asset file leaves no gross misfit. Set out from the recorded states, several laws would fill
+  /// its place.
+  [[nodiscard]] bool a_value_ends_it(const Screening& first) const;
   Result<Screening> look_with_inexact_sensors(const std::vector<KnownValue>& known, const ScreeningOptions& options);
   // Also where the time to search is over: it is what is told then.
   std::optional<Trial> found_in_common(const OwnValues& own);

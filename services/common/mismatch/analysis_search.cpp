@@ -11,6 +11,7 @@
 #include "services/common/mismatch/resolution.hpp"
 #include "services/common/mismatch/telling.hpp"
 #include "services/common/mismatch/tolerance.hpp"
+#include "services/common/mismatch/value_search.hpp"
 #include "services/common/mismatch/value_swaps.hpp"
 #include "services/common/mismatch/verdict.hpp"
 
@@ -97,7 +98,7 @@ Status Analysis::look_from(std::optional<Trial> from) {
   if (own_) fit_.may_differ.clear();  // nothing else was found to differ beside it
   if (own_ && !own_->naming.best.effects.empty()) from = found_in_common(*own_);
   if (own_) tell("looking again, with one value for all tests", 0.5);
-  if (!from && options.maximum_laws > 0 && excess(*baseline_) > kGross) {
+  if (!from && options.maximum_laws > 0 && excess(*baseline_) > kGross && !a_value_ends_it(*first)) {
     tell("setting out from the recorded states", 0.2);
     HeldStart held = start_from_held(*baseline_, prepared(fit_), options);
     from = std::move(held.trial);
@@ -126,6 +127,11 @@ Status Analysis::look_from(std::optional<Trial> from) {
   if (!own_->goes_its_way) ask_values_in_place_of_own();
   if (!why_none_) take_over(*own_);
   return {};
+}
+
+bool Analysis::a_value_ends_it(const Screening& first) const {
+  const Naming naming{.baseline = baseline_, .best = {{}, baseline_}, .trials = {}, .first = first, .last = first};
+  return value_that_ends_it(naming, prepared(fit_), options_.threads).has_value();
 }
 
 Result<Screening> Analysis::look_with_inexact_sensors(const std::vector<KnownValue>& known,

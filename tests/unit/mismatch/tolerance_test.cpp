@@ -21,7 +21,9 @@ using testing::Each;
 using testing::Field;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Le;
 using testing::Not;
+using testing::SizeIs;
 
 AssetConfig actuator() { return load_asset(SEALWATCH_SOURCE_DIR "/config/assets/xt03-mv2.yaml").value(); }
 
@@ -127,6 +129,21 @@ TEST(Tolerance, SensorsOffByLessThanTheyMayBeHideNoPhysicsAndAreWrittenWithTheAs
       EXPECT_NEAR(channel.fit.noise_normalised_rms, after->rms_after, kSameFit * after->rms_after)
           << channel.fit.channel;
     }
+}
+
+// The simulation is far off: set out from the recorded states, several laws together would fill the value's place.
+TEST(Tolerance, AWrongTorqueConstantIsFoundBesideSensorsOffByLessThanTheyMayBe) {
+  AssetConfig truth = with_inexact_sensors();
+  truth.parameters.at("T_M").value *= 0.89;
+  const auto found = explain(actuator(), tests_of(truth), {});
+  ASSERT_TRUE(found) << found.error().describe();
+  EXPECT_THAT(found->effects, IsEmpty()) << found->summary;
+  ASSERT_THAT(found->asset_values, SizeIs(1)) << found->summary;
+  ASSERT_THAT(found->asset_values.front(), SizeIs(1)) << found->summary;
+  EXPECT_EQ(found->asset_values.front().front().name, "T_M");
+  EXPECT_NEAR(found->asset_values.front().front().fitted / actuator().parameter("T_M"), 0.89, 0.01);
+  EXPECT_THAT(found->location, IsEmpty()) << found->summary;
+  EXPECT_THAT(found->trace, Each(Field(&Asked::laws, SizeIs(Le(1U))))) << "several laws were asked together";
 }
 
 TEST(Tolerance, ASensorThatIsFurtherOffIsAFault) {

@@ -126,7 +126,7 @@ class CycloneBus final : public DdsBus {
     return inbox_.strangers_wait() ? Clock::duration(kOfStrangers) : Clock::duration(std::chrono::hours(1));
   }
 
-  transport::Inbox inbox_;         // both outlive the participant,
+  transport::Inbox inbox_;        // both outlive the participant,
   std::deque<Channel> channels_;  // whose listeners use them, by their addresses
   transport::Participant participant_;
   bool has_more_ = false;  ///< after the last take

@@ -69,7 +69,7 @@ class Inbox {
   [[nodiscard]] std::vector<Flood> floods();
 
  private:
-  using Key = std::pair<bool, Writer>;  ///< whether it is a stranger's
+  using Key = std::pair<bool, Writer>;                ///< whether it is a stranger's
   using Line = std::deque<std::unique_ptr<BusItem>>;  ///< in the order in which they came
   /// What waits of one writer, in lines that take turns.
   class Queue {

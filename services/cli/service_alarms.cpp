@@ -26,6 +26,7 @@ constexpr std::array kMeanings = {
     Row{"clock_unsynchronised", "clock is not synchronised"},
     Row{"future_test", "live tests change no advice"},
     Row{"refused_test", "a test was refused"},
+    Row{"refused_conclusion", "what another service concluded was refused"},
     Row{"recording_not_taken", "a recording was not taken"},
     Row{"sensor_lost", "sensor lost"},
     Row{"awaits_confirmation", "an act waits for a second person"},

@@ -32,6 +32,7 @@ inline constexpr std::array kNe107 = {
     Ne107Row{"set_aside", Ne107::failure},
     Ne107Row{"future_test", Ne107::failure},
     Ne107Row{"refused_test", Ne107::failure},
+    Ne107Row{"refused_conclusion", Ne107::failure},
     Ne107Row{"recording_not_taken", Ne107::failure},
     Ne107Row{"sensor_lost", Ne107::failure},
     Ne107Row{"missing_blocks", Ne107::failure},

@@ -206,6 +206,7 @@ class LayerRunner {
   void hear_name(const ServiceStatus& status);
   void note_strangers(const std::vector<StrangerWatch::Stranger>& strangers);
   void note_refused_test(const RawSamples& raw, const std::string& refused);
+  void note_conclusion(const Message& message, const std::optional<std::string>& refused);
   void note_good_test(const RawSamples& raw);
   /// A sender, or the folder, of whose tests of an asset one was refused.
   struct RefusedTest {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sealwatch/core/visible_text.hpp"
+#include "sealwatch/message/outside.hpp"
 #include "services/common/runtime/layer_runner.hpp"
 #include "services/common/runtime/log.hpp"
 #include "services/common/runtime/operator_acts.hpp"
@@ -21,6 +22,7 @@ constexpr const char* kUnknownAsset = "unknown_asset";
 constexpr const char* kRefusedRight = "refused_right";
 constexpr const char* kFutureTest = "future_test";
 constexpr const char* kRefusedTest = "refused_test";
+constexpr const char* kRefusedConclusion = "refused_conclusion";
 constexpr const char* kClockStep = "clock_step";
 constexpr const char* kClockUnsynchronised = "clock_unsynchronised";
 constexpr const char* kFlood = "flood";
@@ -152,6 +154,30 @@ void LayerRunner::note_refused_test(const RawSamples& raw, const std::string& re
   }
 }
 
+/// What another layer concluded and this one refuses is missing from all that would follow from it, and nobody sends it
+/// again: a test without advice, which looks like one that needs none. The next one that is taken ends it. What is
+/// damaged in its writer's journal is told there. Where there is a desk, it keeps what became of the alarm.
+void LayerRunner::note_conclusion(const Message& message, const std::optional<std::string>& refused) {
+  const std::string asset_id = asset_of(message), topic(name_of(topic_of(message)));
+  ServiceAlarm alarm{.kind = kRefusedConclusion,
+                     .asset_id = asset_id,
+                     .subject = topic,
+                     .pst_id = {},
+                     .text = refused.value_or(""),
+                     .since_ns = clock_.now().nanoseconds};
+  if (!refused) {
+    if (alarms_.clear(kRefusedConclusion, asset_id, topic) && !options_.desk)
+      changed_refused_tests_.emplace_back(std::move(alarm), false);
+  } else if (header_of(message).message_id.starts_with(kDamagedMessage)) {
+    return;
+  } else if (!admission_.knows(asset_id)) {
+    alarm.asset_id.clear();
+    alarms_.raise(std::move(alarm), steady_now() + options_.strangers_stand);
+  } else if (alarms_.raise(alarm)) {
+    changed_refused_tests_.emplace_back(std::move(alarm), true);
+  }
+}
+
 /// Where many are refused at once (this machine's clock is wrong), the first few are named: there is room for other alarms.
 void LayerRunner::tell_of_refused_tests() {
   for (std::size_t k = 0; k < refused_tests_.size(); ++k) {
@@ -203,12 +229,14 @@ bool LayerRunner::is_of(const RefusedTest& refused, const RawSamples& raw) {
 
 /// The sender does not send them again after a restart: the alarm would be over, and the test as lost as before.
 Status LayerRunner::restore_refused_tests() {
-  if (!reads_samples()) return {};
   auto kept = journal_.alarms();
   if (!kept) return fail(kept.error());
-  for (AlarmEntry& one : *kept)
-    if (one.service == kind_->name() && one.alarm.kind == kRefusedTest)
+  for (const AlarmEntry& one : *kept) {
+    if (one.service != kind_->name()) continue;
+    if (one.alarm.kind == kRefusedConclusion && one.ended_ns == 0) alarms_.raise(one.alarm);
+    if (one.alarm.kind == kRefusedTest && reads_samples())
       refused_tests_.push_back({one.alarm, {one.alarm.since_ns}, {}, steady_now()});
+  }
   std::ranges::stable_sort(refused_tests_, {}, [](const RefusedTest& one) { return one.alarm.since_ns; });
   tell_of_refused_tests();
   return {};

@@ -780,6 +780,36 @@ TEST_F(RunnerTest, AMessageThatCannotBeReadIsToldOfAndItsStreamGoesOn) {
   EXPECT_FALSE(process->outputs().empty()) << "the test after it is concluded";
 }
 
+TEST_F(RunnerTest, AConclusionThatIsRefusedIsAnAlarmUntilTheNextIsTakenAlsoAfterARestart) {
+  RunnerOptions options = fast_options();
+  options.assets = {"A"};
+  auto process = joiner(options);
+  const auto alarms = [&] {
+    listener_.listen(milliseconds(5));
+    return listener_.statuses.empty() ? std::vector<ServiceAlarm>{} : listener_.statuses.back().alarms;
+  };
+  const auto step = [&] { process->step(); };
+  Message latin_1 = features("p1", 1);
+  std::get<TestFeatures>(latin_1).abort_reason = "f\xF6rtidigt";
+  send(latin_1);
+  ASSERT_TRUE(step_until([&] { return alarms().size() == 1; }, step));
+  EXPECT_EQ(alarms().front().kind, "refused_conclusion");
+  EXPECT_EQ(alarms().front().asset_id, "A");
+  EXPECT_EQ(alarms().front().subject, "test_features");
+  EXPECT_EQ(alarms().front().text, "its abort_reason, 'f\\xF6rtidigt', is not UTF-8; send it with a plain name");
+  process.reset();
+  listener_.statuses.clear();
+  process = joiner(options);
+  ASSERT_TRUE(step_until([&] { return alarms().size() == 1; }, step)) << "a start mends nothing";
+  send(features("p2", 2));
+  EXPECT_TRUE(step_until([&] { return alarms().empty(); }, step)) << "return to normal";
+  process.reset();
+  listener_.statuses.clear();
+  process = joiner(options);
+  ASSERT_TRUE(step_until([&] { return listener_.listen(), !listener_.statuses.empty(); }, step));
+  EXPECT_THAT(alarms(), IsEmpty());
+}
+
 TEST_F(RunnerTest, RefusesAReplacementFromTheFutureUnlessTheTestsAreFromThereToo) {
   const auto layer = [] { return std::make_unique<EventLayer>(); };
   constexpr std::int64_t kDay_ns = 86'400'000'000'000;

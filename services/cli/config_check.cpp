@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "sealwatch/core/visible_text.hpp"
 #include "sealwatch/message/id_part.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/terminal.hpp"
@@ -108,7 +109,7 @@ int run_config_check(const ConfigCheckOptions& options) {
                                     {"value", error.value},
                                     {"rule", error.rule},
                                     {"advice", error.advice}});
-    std::printf("%s\n", result.dump(1).c_str());
+    std::printf("%s\n", result.dump(1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
   } else if (configuration) {
     std::printf("%s: valid: %s, %s, DDS domain %d, state in %s\n", options.config.c_str(),
                 count_of(configuration->assets.size(), "asset").c_str(),
@@ -118,7 +119,7 @@ int run_config_check(const ConfigCheckOptions& options) {
     if (configuration->assets.empty())
       std::printf("no asset is configured, so nothing will be watched: put one file for each actuator into assets/\n");
   } else {
-    for (const Error& error : configuration.error()) std::fprintf(stderr, "%s\n", error.describe().c_str());
+    for (const Error& error : configuration.error()) std::fprintf(stderr, "%s\n", visible(error.describe()).c_str());
     std::fprintf(stderr, "%zu fault%s found\n", configuration.error().size(),
                  configuration.error().size() == 1 ? "" : "s");
   }

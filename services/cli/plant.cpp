@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sealwatch/core/rate_unit.hpp"
+#include "sealwatch/core/visible_text.hpp"
 #include "sealwatch/model/law_sizes.hpp"
 #include "services/cli/columns.hpp"
 #include "services/cli/commands.hpp"
@@ -135,11 +136,13 @@ nlohmann::ordered_json plant_as_json(const std::string& file, const Checked<Read
 int run_plant_check(const PlantCheckOptions& options) {
   const Checked<ReadPlant> read = read_plant_file(options.file);
   if (options.json)
-    std::printf("%s\n", plant_as_json(options.file, read).dump(1).c_str());
+    std::printf(
+        "%s\n",
+        plant_as_json(options.file, read).dump(1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
   else if (read)
     print_plant(options.file, *read);
   if (!read && !options.json) {
-    for (const Error& error : read.error()) std::fprintf(stderr, "%s\n", error.describe().c_str());
+    for (const Error& error : read.error()) std::fprintf(stderr, "%s\n", visible(error.describe()).c_str());
     std::fprintf(stderr, "%zu fault%s found\n", read.error().size(), read.error().size() == 1 ? "" : "s");
   }
   return read ? kOk : kBadInput;

@@ -26,6 +26,12 @@ std::string hash_of(const TimeSeries& samples) {
   return content_hash(bytes);
 }
 
+/// A file's whole name would make ids that no layer takes.
+std::string short_name(const std::string& recording_id) {
+  constexpr std::size_t kLongestName = 100;
+  return recording_id.size() > kLongestName ? content_hash(recording_id) : id_part(recording_id);
+}
+
 /// "20310412T030000Z", fractions of a second kept: format_utc without its separators.
 std::string compact(UtcTime time) {
   std::string result;
@@ -41,7 +47,7 @@ std::string make_pst_id(const RawSamples& first_block) {
   if (first_block.start_time_known)
     when = compact({.nanoseconds = first_block.start_time_ns});
   else if (!first_block.recording_id.empty())
-    when = id_part(first_block.recording_id);
+    when = short_name(first_block.recording_id);
   const std::string content =
       first_block.content_hash.empty() ? hash_of(first_block.samples) : id_part(first_block.content_hash);
   return id_part(first_block.asset_id) + "-" + when + "-" + content.substr(0, kHashDigits) +

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "sealwatch/core/asset_id.hpp"
 #include "sealwatch/core/longest_id.hpp"
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/core/visible_text.hpp"
@@ -94,6 +95,8 @@ Status read_noise(const KeyValue& item, const PlantDescription& plant, Sidecar& 
 Status read_name(const KeyValue& item, std::string& target) {
   const std::string name = item.value.IsNull() ? "" : item.value.Scalar();
   if (name.empty()) return fail(key_error(item, "must not be empty", "leave the key out where there is none"));
+  if (item.key == "asset_id")
+    if (const auto wrong = fault_of_asset_id(name)) return fail(key_error(item, *wrong));
   if (!is_visible(name))
     return fail(key_error(item, "must not have line breaks, other control characters or invisible ones"));
   if (name.size() > kLongestId)

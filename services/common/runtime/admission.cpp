@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "sealwatch/core/asset_id.hpp"
 #include "sealwatch/core/test_limits.hpp"
 #include "sealwatch/core/visible_text.hpp"
 #include "sealwatch/message/alarm_acts.hpp"
@@ -50,7 +51,8 @@ std::optional<std::int64_t> time_of_test(const Message& message) {
 std::optional<std::string> refusal_of_texts(const Message& message) {
   const std::optional<TextFault> fault = fault_of_texts(message);
   if (!fault) return std::nullopt;
-  const bool shown = fault->rule == kHasControls;
+  constexpr std::size_t kShown = 60;
+  const bool shown = fault->text.size() <= kShown;
   return "its " + fault->field + (shown ? ", '" + visible(fault->text, false) + "', " : " ") + fault->rule +
          "; send it with a plain name";
 }
@@ -136,6 +138,8 @@ std::optional<TextFault> fault_of_texts(const Message& message) {
             fault = {std::string(field), text, "is longer than " + std::to_string(longest) + " bytes"};
           else if (id && !is_visible(text))
             fault = {std::string(field), text, kHasControls};
+          else if (const auto wrong = field == "asset_id" ? fault_of_asset_id(text) : std::nullopt)
+            fault = {std::string(field), text, *wrong};
           else
             return;
           is_certain = !field.ends_with("message_id");

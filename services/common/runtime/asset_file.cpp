@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "sealwatch/core/asset_id.hpp"
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/core/visible_text.hpp"
 #include "sealwatch/model/plant_description.hpp"
@@ -221,14 +222,11 @@ Checked<AssetConfig> check_asset(const std::string& file, const std::vector<std:
               "keep plants in a folder of their own and name one from the asset, as model: ../plants/FILE.yaml");
     return tl::unexpected(errors);
   }
-  if (!map.read("asset_id", config.asset_id) && !map.has("asset_id"))
+  if (!map.has("asset_id"))
     map.fault("asset_id", {}, "must be given");
-  else if (map.has("asset_id") && config.asset_id.empty())
-    map.fault("asset_id", {}, "must not be empty");
-  else if (!is_visible(config.asset_id))
-    // It stands in topics, logs and file names, each on one line, and no two must look the same.
-    map.fault("asset_id", visible(config.asset_id, false),
-              "must not have line breaks, other control characters or invisible ones");
+  else if (map.read("asset_id", config.asset_id))
+    if (const auto wrong = config.asset_id.empty() ? "must not be empty" : fault_of_asset_id(config.asset_id))
+      map.fault("asset_id", visible(config.asset_id, false), *wrong);
   if (map.read("site", config.site) && sites && std::ranges::find(*sites, config.site) == sites->end())
     map.fault("site", config.site, "is not one of the configuration's sites", suggest(config.site, *sites));
   map.read("segment", config.segment);

@@ -16,6 +16,7 @@
 #include <optional>
 #include <thread>
 
+#include "sealwatch/core/visible_text.hpp"
 #include "services/common/runtime/configuration_loader.hpp"
 #include "services/common/runtime/large_blocks.hpp"
 #include "services/common/runtime/layer_runner.hpp"
@@ -67,7 +68,7 @@ tl::expected<Arguments, int> parse(int argc, const char* const* argv, const Daem
 }
 
 int complain(const std::string& service, const Error& error, int exit_status) {
-  std::cerr << "sealwatch " << service << ": " << error.describe() << "\n";
+  std::cerr << "sealwatch " << service << ": " << visible(error.describe()) << "\n";
   log_event(LogLevel::error, "gave up", {{"error", error.describe()}});
   return exit_status;
 }

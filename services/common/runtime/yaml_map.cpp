@@ -11,6 +11,7 @@
 
 #include "sealwatch/core/file.hpp"
 #include "sealwatch/core/text.hpp"
+#include "sealwatch/core/visible_text.hpp"
 
 namespace sealwatch {
 namespace {
@@ -183,8 +184,14 @@ std::optional<std::string> YamlMap::scalar(const std::string& key, const char* r
 
 bool YamlMap::read(const std::string& key, std::string& target) {
   const auto text = scalar(key, "must be a text");
-  if (text) target = *text;
-  return text.has_value();
+  if (!text) return false;
+  if (!is_visible(*text, true)) {
+    // It goes out in messages, which their readers refuse, and onto terminals.
+    fault(key, visible(*text), "must be UTF-8 without control characters or invisible ones", "save the file as UTF-8");
+    return false;
+  }
+  target = *text;
+  return true;
 }
 
 bool YamlMap::read(const std::string& key, std::string& target, const std::vector<std::string>& known) {

@@ -89,6 +89,11 @@ TEST(SidecarText, NamesAreNoLongerThanTopicsTakeThem) {
   EXPECT_THAT(result.error().describe(), HasSubstr("must not be longer than 500 bytes"));
 }
 
+TEST(SidecarText, AnAssetIsCalledSoThatItIsToldFromOthers) {
+  EXPECT_THAT(error_of("asset_id: \"XT03 \"\n"), HasSubstr("'XT03 ': must not begin or end with a blank"));
+  EXPECT_THAT(error_of("asset_id: --asset\n"), HasSubstr("'--asset': must not begin with '-'"));
+}
+
 TEST(SidecarText, NamesAreNotEmptyAndOfOneLine) {
   for (const std::string key : {"asset_id", "recording_id"}) {
     const std::string place = "line 2, key " + key + ": ";

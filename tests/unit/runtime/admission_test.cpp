@@ -6,6 +6,8 @@
 
 #include <chrono>
 #include <limits>
+#include <map>
+#include <string>
 #include <string_view>
 
 #include "sealwatch/message/retraction.hpp"
@@ -191,6 +193,16 @@ TEST(AdmissionOfTexts, AnIdIsOneVisibleLineAndAllTextIsUtf8) {
   raw.asset_id = "XT03\u200b";
   EXPECT_THAT(refusal(raw), HasSubstr("'XT03\\xE2\\x80\\x8B', has control or invisible characters"));
   raw = live_test("2031-04-10T00:00:00Z");
+  for (const auto& [id, rule] :
+       std::map<std::string, std::string>{{"XT03 ", "'XT03 ', must not begin or end with a blank"},
+                                          {" XT03", "' XT03', must not begin or end with a blank"},
+                                          {"--config=x", "'--config=x', must not begin with '-'"},
+                                          {std::string(81, 'x'), "must not be longer than 80 bytes"}}) {
+    raw.asset_id = id;
+    EXPECT_THAT(refusal(raw), HasSubstr("its asset_id")) << id;
+    EXPECT_THAT(refusal(raw), HasSubstr(rule));
+  }
+  raw = live_test("2031-04-10T00:00:00Z");
   raw.recording_id = "one\ntwo";
   EXPECT_THAT(refusal(raw), HasSubstr("recording_id"));
   raw.recording_id = std::string(501, 'x');
@@ -220,7 +232,7 @@ TEST(AdmissionOfTexts, AnIdIsOneVisibleLineAndAllTextIsUtf8) {
   EXPECT_THAT(refusal(seen), HasSubstr("its advisory_id is longer than 500 bytes")) << "and not all of it";
   seen.advisory_id = "a";
   seen.remark = "\xFF";
-  EXPECT_THAT(refusal(seen), HasSubstr("its remark is not UTF-8"));
+  EXPECT_THAT(refusal(seen), HasSubstr("its remark, '\\xFF', is not UTF-8"));
 }
 
 TEST(AdmissionOfSamples, ABlockOrWindowOfAStrangerKeepsTheLimits) {

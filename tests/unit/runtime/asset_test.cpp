@@ -42,8 +42,27 @@ const BadCase kBadCases[] = {
     {"control_characters", "asset_id: \"A\\nB\"\n",
      "a.yaml: line 1, key asset_id: 'A\\x0AB': must not have line breaks, other control characters or invisible ones"},
     {"invisible", "asset_id: A\u200b\n",
-     "a.yaml: line 1, key asset_id: 'A\\xE2\\x80\\x8B': must not have line breaks, other control characters or "
-     "invisible ones"},
+     "a.yaml: line 1, key asset_id: 'A\\xE2\\x80\\x8B': must be UTF-8 without control characters or invisible ones; "
+     "save the file as UTF-8"},
+    {"blank_behind_the_id", "asset_id: \"XT03 \"\n",
+     "a.yaml: line 1, key asset_id: 'XT03 ': must not begin or end with a blank, which nobody sees"},
+    {"id_like_an_option", "asset_id: --help\n",
+     "a.yaml: line 1, key asset_id: '--help': must not begin with '-': commands would take it for an option"},
+    {"id_like_no_asset", "asset_id: \"-\"\n",
+     "a.yaml: line 1, key asset_id: '-': must not begin with '-': commands would take it for an option"},
+    {"id_beyond_all_bounds",
+     "asset_id: aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaabbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbc\n",
+     "a.yaml: line 1, key asset_id: "
+     "'aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaabbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbc': "
+     "must not be longer than 80 bytes"},
+    {"id_that_is_no_text", "asset_id: [A]\n", "a.yaml: line 1, key asset_id: must be a text"},
+    {"latin_1", "asset_id: A\nsegment: s\xE4te\n",
+     "a.yaml: line 2, key segment: 's\\xE4te': must be UTF-8 without control characters or invisible ones; save the "
+     "file as UTF-8"},
+    {"for_a_terminal", "asset_id: A\nsegment: \"\\e[2Jgate\"\n",
+     "a.yaml: line 2, key segment: '\\x1B[2Jgate': must be UTF-8 without control characters or invisible ones; save "
+     "the "
+     "file as UTF-8"},
     {"model", "asset_id: A\nmodel: eah\n", "a.yaml: line 2, key model: 'eah': is not known; did you mean 'eha'?"},
     {"unknown_key", "asset_id: A\nsegmnet: x\n",
      "a.yaml: line 2, key segmnet: 'segmnet': is not a known key; did you mean 'segment'?"},

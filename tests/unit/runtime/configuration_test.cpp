@@ -56,6 +56,12 @@ const BadCase kBadCases[] = {
      "sealwatch.yaml: line 1, key services.state_detection.enabled: '1': must be true or false"},
     {"level", "logging:\n  level: inf\n",
      "sealwatch.yaml: line 2, key logging.level: 'inf': is not known; did you mean 'info'?"},
+    {"latin_1", "sites: [{site: a, campaigns: [{label: f\xF6rsommar 2031, start: 2031-06-01}]}]\n",
+     "sealwatch.yaml: line 1, key sites[0].campaigns[0].label: 'f\\xF6rsommar 2031': must be UTF-8 without control "
+     "characters or invisible ones; save the file as UTF-8"},
+    {"a_path_that_ends_early", "state_directory: \"a\\0b\"\n",
+     "sealwatch.yaml: line 1, key state_directory: 'a\\x00b': must be UTF-8 without control characters or invisible "
+     "ones; save the file as UTF-8"},
     {"rotation", "logging: {rotate_at_MB: 0}\n",
      "sealwatch.yaml: line 1, key logging.rotate_at_MB: '0': must be a number above 0"},
     {"lifespan", "topics: {advisory: {lifespan_s: -1}}\n",

@@ -84,6 +84,17 @@ TEST(PstId, NamesAssetStartAndContent) {
   EXPECT_FALSE(undated.front().header.event_time_known);
 }
 
+/// The acts about it name it with its asset, up to three times, and no id may be longer than 500 bytes.
+TEST(PstId, OfARecordingWithALongNameIsNotLonger) {
+  Recording test = recording();
+  test.start_time.reset();
+  test.recording_id = std::string(490, 'r');
+  const std::string id = send_all(test).front().header.pst_id;
+  EXPECT_LT(id.size(), 60U) << id;
+  test.recording_id += "s";
+  EXPECT_NE(send_all(test).front().header.pst_id, id);
+}
+
 TEST(PstId, OfAForeignSenderComesFromTheFirstBlocksContent) {
   Recording test = recording();
   test.start_time.reset();

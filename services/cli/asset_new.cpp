@@ -196,18 +196,24 @@ std::string by_hand(const Understood& log, const ChannelDescription& channel) {
   return may_be.empty() ? "as {column: NAME, scale: 1, unit: " + text::quoted(channel.unit) + "}" : may_be;
 }
 
+std::string why_no_unit(const std::string& header) {
+  const std::size_t open = header.rfind('('), end = header.find_last_of(" _");
+  if (header.ends_with(')') && open != std::string::npos) return header.substr(open) + " is not a known unit";
+  const std::string last = end == std::string::npos ? "" : header.substr(end + 1);
+  if (last.size() > 1 && is_unit(last)) return "'" + last + "' may be its unit, of another quantity";  // P1_mA
+  return "the log gives no unit";
+}
+
 /// What the reader has to check of a channel that was found; "": nothing.
 std::string doubt(const Understood& log, const ChannelDescription& channel) {
   const auto guess = std::ranges::find(log.guesses, channel.name, &ChannelGuess::channel);
   if (guess == log.guesses.end()) return "";
-  if (guess->unit.empty() && channel.unit != "1") {
-    const std::string& header = log.offer.columns[guess->column].text;
-    const std::size_t open = header.rfind('(');
-    if (header.ends_with(')') && open != std::string::npos)
-      return header.substr(open) + " is not a known unit: taken for " + channel.unit + ", check it";
-    return "the log gives no unit: taken for " + channel.unit + ", check it";
-  }
-  return guess->sure ? "" : "uncertain, check it";
+  std::string doubts = guess->sure ? "" : "uncertain, check it";
+  if (guess->unit.empty() && channel.unit != "1")
+    doubts.append(doubts.empty() ? "" : "; ")
+        .append(why_no_unit(log.offer.columns[guess->column].text))
+        .append(": taken for " + channel.unit + ", check it");
+  return doubts;
 }
 
 /// Of a log whose names say nothing, CH1, CH2: its columns, and for each channel the line to complete.
@@ -225,14 +231,18 @@ Error nothing_like_a_channel(const Understood& log, const std::string& file) {
     const std::string line = by_hand(log, channel);
     lines.push_back(channel.name + ": " + line.substr(line.starts_with("as ") ? 3 : 0));
   }
+  const std::string pivot = log.offer.names ? "where each row has one value, named in column " +
+                                                  text::quoted(log.offer.columns[*log.offer.names].text) +
+                                                  ", give each name a column of its own (a pivot table); else "
+                                            : "";
   return Error{.file = file,
                .place = {},
                .value = {},
                .rule = "no column looks like a channel of plant " + log.plant->name,
-               .advice =
-                   "write the map by hand (docs/logs.md), or name another plant with --model; the log's columns "
-                   "are " +
-                   text::separated(columns, ", ") + "; under channels: " + text::separated(lines, "; ")};
+               .advice = pivot +
+                         "write the map by hand (docs/logs.md), or name another plant with --model; the log's columns "
+                         "are " +
+                         text::separated(columns, ", ") + "; under channels: " + text::separated(lines, "; ")};
 }
 
 /// Whose asset it is: as given, as the log's sidecar says, else the log's name.
@@ -410,7 +420,7 @@ void note_gaps(Understood& log) {
       (log.tests.size() > 1 ? " of test " + std::to_string(test) : "") + "; inputs are taken as ramps across them");
 }
 
-/// A number that stands in several rows, farther from all others than they are from each other: for no value, as -9999.
+/// A number that stands in some rows, farther from all others than they are from each other: for no value, as -9999.
 std::optional<std::size_t> rows_of_fill_value(const Series& channel, double& fill) {
   constexpr double kFar = 10.0;  // ranges of the other numbers
   for (const bool lowest : {true, false}) {
@@ -424,7 +434,7 @@ std::optional<std::size_t> rows_of_fill_value(const Series& channel, double& fil
       else
         least = std::min(least, value), most = std::max(most, value);
     const double distance = lowest ? least - fill : fill - most;
-    if (rows > 1 && rows < channel.values.size() / 2 && most > least && distance > kFar * (most - least)) return rows;
+    if (rows > 0 && rows < channel.values.size() / 2 && most > least && distance > kFar * (most - least)) return rows;
   }
   return std::nullopt;
 }
@@ -502,6 +512,16 @@ void note_day_elsewhere(Understood& log) {
                             " is not read: give the test's start_time in the log's sidecar");
 }
 
+/// A time whose unit is a guess, above all where the column is called no time and its numbers only rise.
+void note_unit_of_time(Understood& log, std::size_t time) {
+  const ColumnMapping& mapping = log.map.columns.at("time");
+  const Result<TimeFormat> format = TimeFormat::of(mapping.unit);
+  if ((format && format->is_absolute()) || seconds_of_one(log.offer.columns[time])) return;
+  const std::string count = "{column: " + text::quoted(mapping.column) + ", unit: s, scale: SECONDS_BETWEEN_SAMPLES}";
+  log.remarks.push_back("the log gives no unit for the time, column " + text::quoted(mapping.column) + ": taken for " +
+                        mapping.unit + (counts_by_one(log.offer, time) ? "; if it counts samples: " + count : ""));
+}
+
 Result<Understood> understand(const AssetNewOptions& options) {
   Result<Offer> offer = offer_of(options.log, {});
   if (!offer) return fail(offer.error());
@@ -526,8 +546,8 @@ Result<Understood> understand(const AssetNewOptions& options) {
   if (time == kNoColumn)
     log.remarks.push_back("no column holds times: the rows are taken as " +
                           text::readable(log.map.columns["time"].scale, "s") + " apart, as the log's head says");
-  else if (log.map.columns["time"].unit == "s" && unit_of(log.offer.columns[time]).empty())
-    log.remarks.emplace_back("the log gives no unit for the time: taken for s");
+  else
+    note_unit_of_time(log, time);
   log.guesses = guess_channels(log.offer, *log.plant, time);
   if (!options.yes && isatty(STDIN_FILENO) != 0) ask(log);
   set_layout(log);

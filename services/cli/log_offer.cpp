@@ -51,15 +51,33 @@ std::optional<double> step_in_preamble(const std::vector<std::vector<std::string
     const auto [name, unit] = split_header_cell(first.substr(0, sign));
     const bool is_step = kSteps.contains(without_signs(name));
     if (!is_step && !kRates.contains(without_signs(name))) continue;
-    const Result<double> number = parse_number(is_one_cell      ? first.substr(sign + 1)
-                                               : row.size() > 1 ? row[1]
-                                                                : "",
-                                               decimal);
-    const Result<UnitConversion> to_si = convert_unit(unit, is_step ? "s" : "Hz");
+    const std::string said = is_one_cell ? first.substr(sign + 1) : row.size() > 1 ? row[1] : "";
+    const std::string_view text = trim(said);
+    const std::size_t end = std::min(text.find(' '), text.size());  // "50 Hz", or the unit in a cell of its own
+    const std::string_view behind = end < text.size() ? trim(text.substr(end))
+                                    : !is_one_cell && row.size() > 2 && unit.empty() && !parse_number(row[2], decimal)
+                                        ? trim(row[2])
+                                        : std::string_view();
+    const Result<double> number = parse_number(text.substr(0, end), decimal);
+    const Result<UnitConversion> to_si = convert_unit(behind.empty() ? unit : behind, is_step ? "s" : "Hz");
     if (!number || !to_si || *number <= 0.0) continue;
     steps.insert(is_step ? *number * to_si->scale : 1.0 / (*number * to_si->scale));
   }
   return steps.size() == 1 ? std::optional(*steps.begin()) : std::nullopt;
+}
+
+/// The column of words that come again and again, where each row has one value with its name beside it.
+std::optional<std::size_t> column_of_names(const std::vector<std::vector<std::string>>& rows,
+                                           const FoundLayout& layout) {
+  for (std::size_t k = 0; k < layout.header.size(); ++k) {
+    std::vector<std::string> cells;
+    for (const auto& row : rows)
+      if (k < row.size() && !trim(row[k]).empty() && !parse_number(row[k], layout.decimal)) cells.push_back(row[k]);
+    const std::set<std::string> words(cells.begin(), cells.end());
+    const bool come_again = words.size() > 1 && 2 * words.size() <= cells.size() && cells.size() == rows.size();
+    if (come_again && time_format_of(cells).empty()) return k;
+  }
+  return std::nullopt;
 }
 
 Result<Offer> offer_of_text(const std::string& file, const LogLayout& given) {
@@ -75,6 +93,7 @@ Result<Offer> offer_of_text(const std::string& file, const LogLayout& given) {
   head.resize(static_cast<std::size_t>(in->gcount()));
   if (!in->eof()) head.resize(head.rfind(line_break_of(head)) + 1);
   const auto rows = rows_of(head, offer.layout.delimiter, offer.layout.first_row, kRowsLookedAt);
+  offer.names = column_of_names(rows, offer.layout);
   offer.step_s =
       step_in_preamble(rows_of(head, offer.layout.delimiter, 1, offer.layout.first_row - 1), offer.layout.decimal);
   for (std::size_t k = 0; k < offer.layout.header.size(); ++k) {
@@ -200,6 +219,12 @@ bool has_numbers(const Offer& offer, std::size_t column) {
   return !cells.empty() && std::ranges::all_of(cells, [&](const std::string& cell) {
     return parse_number(cell, offer.layout.decimal).has_value();
   });
+}
+
+bool counts_by_one(const Offer& offer, std::size_t column) {
+  const std::vector<double> numbers = numbers_of(offer.cells[column], offer.layout.decimal);
+  const auto is_no_step = [](double a, double b) { return b - a != 1.0; };
+  return numbers.size() > 1 && std::ranges::adjacent_find(numbers, is_no_step) == numbers.end();
 }
 
 Result<Offer> offer_of(const std::string& file, const LogLayout& given) {

@@ -49,6 +49,17 @@ std::int64_t take_inner_fraction(std::string& text) {
   return 0;
 }
 
+/// The whole days of elapsed hours beyond a day's, "27:15:00", taken out of `text`: strptime's hours end at 23.
+std::int64_t take_days(std::string& text) {
+  constexpr std::int64_t kHours = 24;
+  constexpr std::size_t kMostDigits = 5;
+  const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
+  if (digits < 2 || digits > kMostDigits || !text.substr(digits).starts_with(':')) return 0;
+  const std::int64_t hours = std::stoll(text.substr(0, digits));
+  text.replace(0, digits, std::to_string(hours % kHours));
+  return hours / kHours;
+}
+
 /// "Z", "UTC", "+02", "+0200", "-05:30" at the end, with a blank before it or without one, taken off `text`: seconds east
 /// of Greenwich.
 std::int64_t take_zone_at_end(std::string_view& text) {
@@ -137,6 +148,7 @@ Result<double> parse_number(std::string_view text, char decimal) {
 
 Result<UtcTime> parse_pattern(std::string_view cell, const std::string& pattern) {
   std::string text(trim(cell));
+  const std::int64_t days = pattern.starts_with("%H:%M:") ? take_days(text) : 0;
   const bool ends_in_seconds = pattern.ends_with("%S") || pattern.ends_with("%T");
   const std::int64_t inner = ends_in_seconds ? 0 : take_inner_fraction(text);
   std::tm parts{};
@@ -149,7 +161,8 @@ Result<UtcTime> parse_pattern(std::string_view cell, const std::string& pattern)
   if (!fraction) return fail("must be a time as " + pattern + " describes it");
   if (parts.tm_sec > 59) return fail(kLeapSecond, kLeapSecondAdvice);
   if (parts.tm_year < -200 || parts.tm_year > 350) return fail("must be a time of the years 1700 to 2250");
-  const std::int64_t seconds = timegm(&parts) - parts.tm_gmtoff - zone_s;
+  const std::int64_t seconds =
+      timegm(&parts) - parts.tm_gmtoff - zone_s + days * static_cast<std::int64_t>(kSecondsPerDay);
   return UtcTime{seconds * kNanoseconds + inner + *fraction};
 }
 

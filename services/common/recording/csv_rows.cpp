@@ -121,12 +121,13 @@ Result<bool> CsvRows::next(std::vector<std::string_view>& cells) {
   cells.clear();
   while (begin_ == end_)
     if (!fill()) return false;
-  ++row_;
+  row_ += lines_;
   const Result<std::size_t> row_end = find_row_end(true);
   if (!row_end) return fail(row_end.error());
   char* const begin = buffer_.data() + begin_;
   char* end = buffer_.data() + *row_end;
   has_line_break_ = *row_end != end_;
+  lines_ = 1 + (has_quotes_ ? static_cast<std::size_t>(std::count(begin, end, line_break_)) : 0);
   begin_ = *row_end + (has_line_break_ ? 1 : 0);
   while (end != begin && end[-1] == '\r') --end;  // a text file written as text on Windows has two
   if (delimiter_ == ' ') end = single_blanks(begin, end);
@@ -137,9 +138,10 @@ Result<bool> CsvRows::next(std::vector<std::string_view>& cells) {
 Result<bool> CsvRows::skip_line() {
   while (begin_ == end_)
     if (!fill()) return false;
-  ++row_;
+  row_ += lines_;
   const Result<std::size_t> row_end = find_row_end(false);
   if (!row_end) return fail(row_end.error());
+  lines_ = 1;
   has_line_break_ = *row_end != end_;
   begin_ = *row_end + (has_line_break_ ? 1 : 0);
   return true;

@@ -46,6 +46,7 @@ class CsvRows {
   std::size_t begin_ = 0;  ///< first byte in buffer_ that no row has taken
   std::size_t end_ = 0;    ///< past the last byte in buffer_
   std::size_t row_ = 0;
+  std::size_t lines_ = 1;  ///< of the row before the next one: its quoted cells may have line breaks
   bool has_line_break_ = false;
   bool has_quotes_ = false;  ///< of the row being taken
   ContentHasher hasher_;

@@ -27,29 +27,19 @@ constexpr std::array kDelimiters = {std::pair{"semicolon", ';'}, std::pair{"tab"
 constexpr std::array kDecimals = {std::pair{"point", '.'}, std::pair{"comma", ','}};
 
 // The day before the month: of "3/4/2031" nobody can tell, of "25/4/2031" and "4/25/2031" the cells do.
-constexpr std::array kTimePatterns = {"%d.%m.%Y %H:%M:%S",
-                                      "%d.%m.%Y, %H:%M:%S",
-                                      "%d.%m.%Y %H:%M",
-                                      "%d/%m/%Y %H:%M:%S",
-                                      "%d/%m/%Y, %H:%M:%S",
-                                      "%d-%m-%Y %H:%M:%S",
-                                      "%m/%d/%Y %I:%M:%S %p",
-                                      "%m/%d/%Y, %I:%M:%S %p",
-                                      "%m/%d/%Y %H:%M:%S",
-                                      "%m-%d-%Y %H:%M:%S",
-                                      "%Y/%m/%d %H:%M:%S",
-                                      "%Y.%m.%d %H:%M:%S",
-                                      "%Y-%m-%d %I:%M:%S %p",
-                                      "%d-%b-%Y %H:%M:%S",
-                                      "%b %d %Y %H:%M:%S",
-                                      "%d %b %Y %H:%M:%S",
-                                      "%d.%m.%y %H:%M:%S",
-                                      "%d/%m/%y %H:%M:%S",
-                                      "%m/%d/%y %I:%M:%S %p",
-                                      "%m/%d/%y %H:%M:%S",
-                                      "%Y%m%d %H%M%S",
-                                      "%Y%m%dT%H%M%S",
-                                      "%H:%M:%S",
+constexpr std::array kTimePatterns = {"%d.%m.%Y %H:%M:%S",    "%d.%m.%Y, %H:%M:%S",
+                                      "%d.%m.%Y %H:%M",       "%d/%m/%Y %H:%M:%S",
+                                      "%d/%m/%Y, %H:%M:%S",   "%d-%m-%Y %H:%M:%S",
+                                      "%m/%d/%Y %I:%M:%S %p", "%m/%d/%Y, %I:%M:%S %p",
+                                      "%m/%d/%Y %H:%M:%S",    "%m-%d-%Y %H:%M:%S",
+                                      "%Y/%m/%d %H:%M:%S",    "%Y.%m.%d %H:%M:%S",
+                                      "%Y-%m-%d %I:%M:%S %p", "%d-%b-%Y %H:%M:%S",
+                                      "%d-%b-%y %H:%M:%S",    "%d-%b-%Y %I:%M:%S %p",
+                                      "%d-%b-%y %I:%M:%S %p", "%b %d %Y %H:%M:%S",
+                                      "%d %b %Y %H:%M:%S",    "%d.%m.%y %H:%M:%S",
+                                      "%d/%m/%y %H:%M:%S",    "%m/%d/%y %I:%M:%S %p",
+                                      "%m/%d/%y %H:%M:%S",    "%Y%m%d %H%M%S",
+                                      "%Y%m%dT%H%M%S",        "%H:%M:%S",
                                       "%I:%M:%S %p"};
 
 using Rows = std::vector<std::vector<std::string>>;
@@ -220,7 +210,7 @@ bool is_row_of_units(const std::vector<std::string>& row, const std::vector<std:
     const std::string unit = without_brackets(row[k]);
     if (unit.empty()) continue;
     ++filled;
-    units += is_unit(unit) ? 1 : 0;
+    units += is_unit(unit) && unit.find(" in ") == std::string::npos ? 1 : 0;  // "t in s": tonne inch second
     named += k < above.size() && !is_blank(above[k]) && !is_value(above[k], form) ? 1 : 0;
   }
   return filled > 0 && (units == filled || (2 * units > filled && named == filled));
@@ -402,20 +392,44 @@ std::vector<std::string> split_at(std::string_view line, char delimiter) {
 
 }  // namespace
 
+namespace {
+
+/// The cells of a whole row; nothing where its quotes do not fit.
+std::optional<std::vector<std::string>> cells_in(std::string_view text, char delimiter) {
+  std::istringstream in{std::string(text)};
+  CsvRows rows(in, delimiter);
+  std::vector<std::string_view> row;
+  if (!rows.next(row)) return std::nullopt;
+  return std::vector<std::string>(row.begin(), row.end());
+}
+
+/// How many bytes the row has that `head` begins with: quoted cells may have line breaks, as headers of spreadsheets do.
+/// A quote that does not close, as an inch sign in a preamble, ends with its line.
+std::size_t length_of_row(std::string_view head, char delimiter, char line_break) {
+  constexpr int kMostLines = 50;
+  const std::size_t line = std::min(head.find(line_break), head.size());
+  std::size_t length = line;
+  for (int lines = 1; lines <= kMostLines; ++lines) {
+    if (std::ranges::count(head.substr(0, length), '"') % 2 == 0)
+      return cells_in(head.substr(0, length), delimiter) ? length : line;
+    if (length == head.size()) return line;
+    length = std::min(head.find(line_break, length + 1), head.size());
+  }
+  return line;
+}
+
+}  // namespace
+
 Rows rows_of(std::string_view head, char delimiter, std::size_t first_row, std::size_t most) {
   Rows rows;
   const char line_break = line_break_of(head);
   std::size_t number = 0;
   while (!head.empty() && rows.size() < most) {
-    const std::size_t length = std::min(head.find(line_break), head.size());
-    if (++number >= first_row) {
-      std::istringstream line{std::string(head.substr(0, length))};
-      CsvRows cells(line, delimiter);
-      std::vector<std::string_view> row;
-      const Result<bool> there = cells.next(row);
-      rows.emplace_back(there ? std::vector<std::string>(row.begin(), row.end())
-                              : split_at(head.substr(0, length), delimiter));
-    }
+    const std::size_t length = length_of_row(head, delimiter, line_break);
+    const std::string_view text = head.substr(0, length);
+    if (++number >= first_row) rows.push_back(cells_in(text, delimiter).value_or(split_at(text, delimiter)));
+    for (auto more = std::ranges::count(text, line_break); more > 0; --more)
+      if (++number >= first_row) rows.emplace_back(1);
     head.remove_prefix(std::min(length + 1, head.size()));
   }
   return rows;
@@ -444,11 +458,20 @@ Result<FoundLayout> find_layout(std::string_view head, const LogLayout& given) {
     return filled_to(number > 0 ? reading->rows[number - 1] : std::vector<std::string>(), reading->width);
   };
   for (const std::string& cell : without_comment_sign(cells_of(out.header_row), reading->width))
-    out.header.push_back(out.header_row > 0 ? as_utf8(trim(cell)) : place_name(out.header.size()));
+    out.header.push_back(out.header_row > 0 ? header_text(cell) : place_name(out.header.size()));
   for (const std::string& cell : without_name_of_units(cells_of(out.units_row)))
     out.units.push_back(without_brackets(cell));
   out.units.resize(out.header.size());
   return out;
+}
+
+std::string header_text(std::string_view cell) {
+  std::string text;
+  for (const char letter : trim(cell)) {
+    const bool is_break = letter == '\n' || letter == '\r';
+    if (!is_break || !text.ends_with(' ')) text += is_break ? ' ' : letter;
+  }
+  return as_utf8(trim(text));
 }
 
 bool repeats_head(const FoundLayout& layout, const std::vector<std::string_view>& cells) {
@@ -461,8 +484,7 @@ bool repeats_head(const FoundLayout& layout, const std::vector<std::string_view>
         return false;
     return true;
   };
-  const auto as_name = [](std::string_view cell) { return as_utf8(trim(cell)); };
-  return (layout.header_row > 0 && is_row(layout.header, as_name)) ||
+  return (layout.header_row > 0 && is_row(layout.header, header_text)) ||
          (layout.units_row > 0 && is_row(layout.units, without_brackets));
 }
 

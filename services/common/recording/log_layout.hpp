@@ -30,10 +30,14 @@ struct FoundLayout {
 /// `head`: the file's first bytes, some 100 kB or all of it. What `given` says is taken as it is. Errors name a row.
 [[nodiscard]] Result<FoundLayout> find_layout(std::string_view head, const LogLayout& given);
 
+/// A header cell in one line, UTF-8.
+[[nodiscard]] std::string header_text(std::string_view cell);
+
 /// Whether a row is the table's header, or its units, once more: loggers write both above each block.
 [[nodiscard]] bool repeats_head(const FoundLayout& layout, const std::vector<std::string_view>& cells);
 
-/// The rows of `head` from `first_row` on, at most `most`, as cells.
+/// The rows of `head` from `first_row` on, some `most`, as cells. One of several lines, with line breaks in quotes, is
+/// its first line; its others are blank rows.
 [[nodiscard]] std::vector<std::vector<std::string>> rows_of(std::string_view head, char delimiter,
                                                             std::size_t first_row, std::size_t most);
 

@@ -15,6 +15,7 @@
 namespace sealwatch {
 namespace {
 
+constexpr const char* kRowsAFixedTimeApart = "{column: row, unit: s, scale: SECONDS_BETWEEN_ROWS}";
 constexpr std::size_t kHead_bytes = std::size_t{1} << 18U;
 
 /// Without the empty cells at the end: many loggers put a delimiter behind every row.
@@ -110,6 +111,12 @@ class LogReader {
     return index < cells_.size() ? cells_[index] : std::string_view();
   }
 
+  /// Not only of this one: blocks of one file may have their columns in another order.
+  [[nodiscard]] bool is_name_of_a_column(std::string_view cell) const {
+    return layout_.header_row > 0 && !trim(cell).empty() &&
+           std::ranges::find(layout_.header, header_text(cell)) != layout_.header.end();
+  }
+
   /// What the time is read from: its cell, behind that of the day where this has its own.
   [[nodiscard]] std::string_view time_cell() {
     if (!mapped_.day) return cell(time_);
@@ -171,8 +178,13 @@ class LogReader {
                       std::to_string(mapped_.columns[k].index + 1),
                   rows_.has_line_break() ? "take the row out" : "the last line is cut off");
     if (k == time_ && !is_counted && values_[time_].empty() && trim(cell(k)).empty())
-      return fail("the cell is empty", "in the map: time: {column: row, unit: s, scale: SECONDS_BETWEEN_ROWS}");
-    if (k == time_) return seconds_at();
+      return fail("the cell is empty", std::string("in the map: time: ") + kRowsAFixedTimeApart);
+    if (k == time_) {
+      Result<double> seconds = seconds_at();
+      if (!seconds && is_name_of_a_column(cell(k)))
+        return fail("is a column's name: another header", "make a file of its own of what follows");
+      return seconds;
+    }
     const Result<double> number = number_in(cell(k));
     if (!number && holds_no_value(cell(k)))
       return fail(number.error().rule, "log: {incomplete_rows: skip} leaves such rows out");
@@ -197,7 +209,8 @@ class LogReader {
     return fail(error_in(
         time_,
         repeats ? "time repeats" : "time goes back: the row before is at " + text::significant(time.back(), 9) + " s",
-        repeats ? kRepeatAdvice : "log: {time_resets: join} takes it as one test, split as another test"));
+        repeats ? kRepeatAdvice + std::string("; of rows a fixed time apart: time: ") + kRowsAFixedTimeApart
+                : "log: {time_resets: join} takes it as one test, split as another test"));
   }
 
   Status end_test() {

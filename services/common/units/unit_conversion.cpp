@@ -37,8 +37,8 @@ constexpr std::array kAdditions = {
     Addition{"LPM", "L/min"}, Addition{"cfm", "ft3/min"}, Addition{"PSI", "psi"},
     Addition{"mmH2O", "9.80665 Pa"},  // water of 1000 kg/m3
     Addition{"inH2O", "249.08891 Pa"}, Addition{"rev", "cycle"}, Addition{"deg", "arc_degree"}, Addition{"RPM", "rpm"},
-    Addition{"U/min", "rpm"}, Addition{"rev/min", "rpm"}, Addition{"Nm", "N m"}, Addition{"VDC", "V"},
-    Addition{"HP", "hp"}, Addition{"counts", "1"}, Addition{"count", "1"}, Addition{"pct", "%"},
+    Addition{"U/min", "rpm"}, Addition{"tr/min", "rpm"}, Addition{"rev/min", "rpm"}, Addition{"Nm", "N m"},
+    Addition{"VDC", "V"}, Addition{"HP", "hp"}, Addition{"counts", "1"}, Addition{"count", "1"}, Addition{"pct", "%"},
     // What loggers write, and UDUNITS takes for a charge, a capacitance, an angle or a mass.
     Addition{"C", "degC", "K"}, Addition{"F", "degF", "K"}, Addition{"deg C", "degC", "K"},
     Addition{"deg F", "degF", "K"}, Addition{"deg. C", "degC", "K"}, Addition{"deg. F", "degF", "K"},
@@ -56,6 +56,10 @@ constexpr std::array kAdditions = {
     Addition{"AMPS", "A", "A"}, Addition{"VOLTS", "V", "V"}, Addition{"lb", "lbf", "N"}, Addition{"lbs", "lbf", "N"},
     Addition{"kg", "kgf", "N"}, Addition{"ft-lb", "ft lbf", "N m"}, Addition{"lb-ft", "ft lbf", "N m"},
     Addition{"in-lb", "in lbf", "N m"},
+    // Samples a second; UDUNITS' S is siemens.
+    Addition{"S/s", "Hz", "Hz"}, Addition{"kS/s", "kHz", "Hz"}, Addition{"MS/s", "MHz", "Hz"},
+    Addition{"Sa/s", "Hz", "Hz"}, Addition{"kSa/s", "kHz", "Hz"}, Addition{"MSa/s", "MHz", "Hz"},
+    Addition{"samples/s", "Hz", "Hz"}, Addition{"sps", "Hz", "Hz"},
     // Of an angular speed, what has no angle counts revolutions: nobody logs radians a minute.
     Addition{"1/min", "rpm", "rad/s"}, Addition{"min-1", "rpm", "rad/s"}, Addition{"min^-1", "rpm", "rad/s"},
     Addition{"/min", "rpm", "rad/s"}, Addition{"min⁻¹", "rpm", "rad/s"}};

@@ -556,6 +556,73 @@ TEST_F(StrangeLogs, OfNamesThatSayNothingTheLinesToCompleteAreTold) {
   EXPECT_THAT(said, ::testing::HasSubstr("motor_voltage: {column: \"CH1 [counts]\", scale: 1, unit: \"V\"}"));
 }
 
+TEST_F(StrangeLogs, HeaderCellsMayHaveLineBreaks) {
+  for (const char* end : {"\n", "\r\n"}) {
+    const std::string line = end;
+    expect_three_rows("Rig 3\" bore" + line + "\"Time" + line + "[s]\";\"Motor" + line + "voltage" + line +
+                      "[V]\";\"Position" + line + "(mm)\"" + line + "0;1.5;60" + line + "0.25;2;59" + line + "1;4;57" +
+                      line);
+  }
+}
+
+TEST_F(StrangeLogs, OfAnOscilloscopeAndOfAHistorian) {
+  expect_three_rows(
+      "Resolution,0.25\nVerticalUnit,V\nTime in s,motor_voltage in V,position in mm\n0,1.5,60\n0.25,2,59\n1,4,57\n");
+  for (const char* day : {"12-Apr-31 ", "12-Apr-2031 "})
+    for (const char* half : {"", " AM"}) {
+      const std::string date = std::string("\n") + day, end = half;
+      expect_three_rows("Timestamp,motor_voltage [V],position [mm]" + date + "03:00:00.000" + end + ",1.5,60" + date +
+                        "03:00:00.250" + end + ",2,59" + date + "03:00:01.000" + end + ",4,57\n");
+    }
+  expect_three_rows(
+      "Elapsed;motor_voltage [V];position [mm]\n23:59:59.75;1.5;60\n24:00:00.000;2;59\n24:00:00.750;4;57\n");
+  expect_three_rows(
+      "Elapsed;motor_voltage [V];position [mm]\n100:59:59.75;1.5;60\n101:00:00;2;59\n101:00:00.75;4;57\n");
+}
+
+TEST_F(StrangeLogs, AStepInTheHeadMayHaveItsUnitBehindIt) {
+  for (const char* head : {"Sampling rate;4 Hz\n", "Sampling rate: 4 Hz\n", "Sample rate;4;Hz\n", "Rate;4 S/s\n",
+                           "Sample interval;250 ms\n", "Sample rate [kHz];0.004\n"}) {
+    const ReadBack back =
+        read_back(std::string(head) + "\nNo.;motor_voltage [V];position [mm]\n1;1.5;60\n2;2;59\n3;4;57\n");
+    EXPECT_THAT(back.samples.time_s, ::testing::ElementsAre(0.0, 0.25, 0.5)) << head << back.told;
+  }
+}
+
+// Seconds that are a count of samples are wrong by the sampling rate, and nothing else shows it.
+TEST_F(StrangeLogs, AColumnThatOnlyRisesIsNamedAsTheTime) {
+  EXPECT_THAT(read_back("No.;motor_voltage [V];position [mm]\n1;1.5;60\n2;2;59\n3;4;57\n").told,
+              ::testing::HasSubstr("no unit for the time, column \"No.\": taken for s; if it counts samples: "
+                                   "{column: \"No.\", unit: s, scale: SECONDS_BETWEEN_SAMPLES}"));
+  EXPECT_THAT(
+      read_back("ts;motor_voltage [V];position [mm]\n1772614800000;1.5;60\n1772614800010;2;59\n1772614800020;4;57\n")
+          .told,
+      ::testing::HasSubstr("column \"ts\": taken for ms\n"));
+}
+
+TEST_F(StrangeLogs, EveryDoubtOfAColumnIsTold) {
+  const std::string rows = "0,1,0.060,0.050\n1,1,0.060,0.050\n2,1,0.059,0.051\n";
+  EXPECT_THAT(read_back("time [s],motor_voltage [V],position,position\n" + rows).told,
+              ::testing::HasSubstr("uncertain, check it; the log gives no unit: taken for m, check it"));
+  EXPECT_THAT(read_back("time [s],motor_voltage [V],position_mA,x\n" + rows).told,
+              ::testing::HasSubstr("'mA' may be its unit, of another quantity: taken for m, check it"));
+  std::string text = "Time [s];motor_voltage [V];position [mm]\n";
+  for (int row = 0; row < 20; ++row)
+    text += std::to_string(row) + ";" + std::to_string(row % 3) + ";" +
+            (row == 3 ? "-9999" : std::to_string(50 + row)) + "\n";
+  EXPECT_THAT(read_back(text).told, ::testing::HasSubstr("position is −10.0 m in 1 row, far from all others"));
+}
+
+TEST_F(StrangeLogs, ALogOfOneValueARowIsToldToBeMadeATable) {
+  std::string text = "VarName;TimeString;VarValue\n";
+  for (const char* time : {"00", "01", "02"})
+    for (const char* name : {"Druck", "Weg"}) text += std::string(name) + ";12.04.2031 03:00:" + time + ";1,5\n";
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(make(text.c_str(), "eha"), kBadInput);
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
+              ::testing::HasSubstr("one value, named in column \"VarName\", give each name a column of its own"));
+}
+
 TEST_F(AssetNew, AColumnWithoutAUnitIsMarked) {
   ASSERT_EQ(make("t [s],motor_voltage [V],position\n0,1,2048\n1,1,2049\n2,1,2050\n"), kOk);
   std::ifstream written(path("a.yaml"));

@@ -104,6 +104,18 @@ TEST_F(LoggerLayouts, ASecondHeaderIsRefused) {
               HasSubstr("row 5, column 1"));
 }
 
+// Its columns may stand in another order: taking the row out, as of a summary, would swap them unseen.
+TEST_F(LoggerLayouts, AHeaderInAnotherOrderNeedsAFileOfItsOwn) {
+  EXPECT_THAT(
+      error_of("t [s];U [mV];x [mm]\n0;1;60\n0.5;2;59\n\nx [mm];t [s];U [mV]\n57;1;4\n57;1.5;4\n"),
+      AllOf(HasSubstr("row 5, column 1"), HasSubstr("is a column's name: another header; make a file of its own")));
+}
+
+TEST_F(LoggerLayouts, RowsAreCountedAsAnEditorDoes) {
+  EXPECT_THAT(error_of("t [s];U [mV];x [mm];note\n0;1;60;\"two\nlines\"\n0.5;2;\n", map_of("t", "s")),
+              HasSubstr("row 4, column 3"));
+}
+
 TEST_F(LoggerLayouts, ACountOfSamplesIsATimeWithAScale) {
   ChannelMap map = map_of("n", "s");
   map.columns["time"].scale = 0.5, map.columns["time"].is_scaled = true;

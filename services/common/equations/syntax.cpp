@@ -59,8 +59,15 @@ class Parser {
       const bool adds = text_[at_++] == '+';
       left = joined(adds ? Syntax::Kind::add : Syntax::Kind::subtract, std::move(left), product());
     }
+    refuse_choice();
     --depth_;
     return left;
+  }
+
+  /// What other languages choose with: "x > 0 ? a : b".
+  void refuse_choice() {
+    if (!failed_ && std::string_view("<>=?&|!").find(peek()) != std::string_view::npos && peek() != '\0')
+      fault("is not an operator", "a choice is made with step(a, width), a bound with min or max(a, b, width)");
   }
 
   Syntax product() {

@@ -181,7 +181,9 @@ Checked<ReadPlant> read_plant_file(const std::string& file) {
   const auto node = load_yaml(file, errors);
   for (Error& error : errors)
     if (error.advice.empty() && error.rule.starts_with("is not YAML"))
-      error.advice = "within {...} an expression with commas or square brackets needs quotes";
+      error.advice =
+          "within {...} an expression with commas or square brackets needs quotes; lines are indented with blanks, not "
+          "tabs";
   if (!node) return tl::unexpected(errors);
   YamlMap root(file, *node, {}, errors);
   ReadPlant read;

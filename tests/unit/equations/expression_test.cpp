@@ -199,6 +199,9 @@ TEST(Faults, NameThePlaceAndWhatWouldMendIt) {
       {"1e999", "is not a number"},
       {"a^(2^2^2^2^2^2^2)", "is a constant that is not finite"},
       {"x + 1e300[m]*1e300", "is a constant that is not finite"},
+      {"a*(x > 0)", "a choice is made with step(a, width)"},
+      {"a <= 2", "a choice is made"},
+      {"min(a, 2, 1 ? 2 : 3)", "a choice is made"},
       {"log(0)", "is a constant that is not finite"},
   };
   for (const auto& [text, expected] : cases) {

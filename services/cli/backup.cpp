@@ -41,6 +41,16 @@ int run_restore(const BackupOptions& options) {
   const auto connections = journal_connections(options.state_directory, options.config);
   if (!connections) return kBadInput;
   std::error_code none;
+  for (const auto& [service, connection] : *connections)
+    if (const fs::path copy = copy_of(options.directory, service);
+        !is_missing(connection) && fs::equivalent(copy, Journal::file_of(connection), none)) {
+      complain(Error{.file = copy.string(),
+                     .place = {},
+                     .value = {},
+                     .rule = "is the journal that would be replaced, not a copy of it",
+                     .advice = "name the directory that `sealwatch backup` wrote to"});
+      return kBadInput;
+    }
   for (const auto& [service, connection] : *connections)  // all or nothing, of services that still run
     if (fs::exists(copy_of(options.directory, service), none) && !is_missing(connection))
       if (const auto lock = JournalLock::take(Journal::file_of(connection)); !lock) {

@@ -20,7 +20,8 @@ Status check_file(const std::string& connection, const fs::path& file) {
     return fail(Error{connection, "journal", file.string(), std::move(rule), std::move(advice)});
   };
   std::error_code none;
-  if (file.empty() || fs::is_directory(file, none)) return refuse("is not a file", "name one: sqlite3://FILE");
+  if (file.empty() || (fs::exists(file, none) && !fs::is_regular_file(file, none)))
+    return refuse("is not a file", "name one: sqlite3://FILE");
   if (fs::exists(file, none))
     return ::access(file.c_str(), R_OK | W_OK) == 0 ? Status()
                                                     : refuse("may not be written", "let this user write there");

@@ -125,8 +125,11 @@ Result<JournalReader> JournalReader::open(const std::string& connection, const s
   if (connection.starts_with(kFile)) {
     const std::string file = Journal::file_of(connection);
     std::error_code none;
-    if (!std::filesystem::is_regular_file(file, none))
-      return fail(Error{.file = file, .place = {}, .value = {}, .rule = "does not exist", .advice = {}});
+    if (!std::filesystem::is_regular_file(file, none)) {
+      const bool is_other = std::filesystem::exists(file, none);
+      const char* const rule = is_other ? "is not a file: no journal of a service" : "does not exist";
+      return fail(Error{.file = file, .place = {}, .value = {}, .rule = rule, .advice = {}});
+    }
     to_open = std::string(kFile).append("dbname=\"").append(file).append("\" readonly=true timeout=5");
   }
   const auto opened = session->guard([&] {

@@ -248,6 +248,15 @@ TEST_F(Kept, ADamagedJournalIsSaidToBeDamagedAndStopsOnlyWhatNeedsIt) {
                                  HasSubstr("restore it from a backup"), Not(HasSubstr("SELECT"))));
 }
 
+TEST_F(Kept, AStateDirectoryIsNoBackupOfItself) {
+  const Said refused = said([&] {
+    return run_restore({kConfig, state_.string(), (state_ / ".." / "state").string()});
+  });
+  EXPECT_EQ(refused.status, kBadInput);
+  EXPECT_THAT(refused.errors, HasSubstr("advisory_generation.db: is the journal that would be replaced"));
+  EXPECT_EQ(show(kAsset).status, kOk) << "and it is where it was";
+}
+
 TEST_F(Kept, JournalsThatTheConfigurationNamesWinOverTheStateDirectory) {
   const auto elsewhere = folder_ / "elsewhere";
   const auto config = folder_ / "config";

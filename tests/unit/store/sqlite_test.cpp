@@ -3,13 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <thread>
 
 #include "services/common/store/journal.hpp"
+#include "services/common/store/journal_reader.hpp"
 #include "tests/unit/message/fill.hpp"
 #include "tests/unit/store/place.hpp"
 
@@ -105,6 +108,21 @@ TEST(JournalPlace, IsTheSameHoweverTheFileIsWritten) {
   EXPECT_EQ(Journal::place_of("sqlite3://j.db"), Journal::place_of("sqlite3://./j.db"));
   EXPECT_NE(Journal::place_of("sqlite3://a.db"), Journal::place_of("sqlite3://b.db"));
   EXPECT_EQ(Journal::place_of("postgresql://dbname=x"), "postgresql://dbname=x");
+}
+
+TEST(JournalPlace, IsAFileOrNoneYet) {
+  const Place place;
+  const std::string pipe = "sqlite3://" + (place.directory() / "pipe.db").string();
+  ASSERT_EQ(::mkfifo(Journal::file_of(pipe).c_str(), 0600), 0);
+  for (const std::string& no_file : {pipe, std::string("sqlite3:///dev/full")}) {
+    const Status checked = Journal::check(no_file);
+    ASSERT_FALSE(checked.has_value()) << no_file;
+    EXPECT_EQ(checked.error().rule, "is not a file");
+    const auto read = JournalReader::open(no_file, "state_detection");
+    ASSERT_FALSE(read.has_value()) << no_file;
+    EXPECT_THAT(read.error().rule, HasSubstr("is not a file"));
+  }
+  EXPECT_TRUE(Journal::check(place.connection()).has_value());
 }
 
 TEST(JournalServer, ThatDoesNotAnswerIsNoMatterOfDirectories) {

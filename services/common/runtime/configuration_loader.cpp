@@ -36,7 +36,8 @@ fs::path file_of(const std::string& path) {
 
 /// Whoever is told of a configuration that is not there learns where it was looked for, and how to name another.
 Error not_there(const fs::path& file) {
-  return {.file = fs::absolute(file).lexically_normal().string(),
+  std::error_code none;  // of "", where a script's variable was empty
+  return {.file = fs::absolute(file, none).lexically_normal().string(),
           .place = {},
           .value = {},
           .rule = "does not exist: no configuration",

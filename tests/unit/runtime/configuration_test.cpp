@@ -217,6 +217,9 @@ TEST(ConfigurationTest, AMissingFileIsNamed) {
   const auto relative = load_configuration("no/such/folder");
   ASSERT_FALSE(relative);
   EXPECT_EQ(relative.error().front().file, (std::filesystem::current_path() / "no/such/folder").string());
+  const auto empty = load_configuration("");
+  ASSERT_FALSE(empty);
+  EXPECT_THAT(empty.error().front().rule, HasSubstr("does not exist: no configuration"));
 }
 
 TEST(ConfigurationTest, AllFaultsOfAllFilesAreNamedAtOnce) {

@@ -61,6 +61,9 @@ class Analysis {
   // known already.
   Status look_from(std::optional<Trial> from);
   // Sensors that were off beside what differs are so in common; also where the time to search is over.
+  /// Whether another parameter with a value for each test promises more than what wears, beside the same laws: wear fills
+  /// its place.
+  [[nodiscard]] bool another_differs_rather(const Trial& common) const;
   /// Whether one value of the asset file leaves no gross misfit. Set out from the recorded states, several laws would fill
   /// its place.
   [[nodiscard]] bool a_value_ends_it(const Screening& first) const;

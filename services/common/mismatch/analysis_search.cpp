@@ -8,6 +8,7 @@
 #include "services/common/mismatch/between_tests.hpp"
 #include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/held_start.hpp"
+#include "services/common/mismatch/own_gains.hpp"
 #include "services/common/mismatch/resolution.hpp"
 #include "services/common/mismatch/telling.hpp"
 #include "services/common/mismatch/tolerance.hpp"
@@ -77,6 +78,7 @@ Status Analysis::look_from(std::optional<Trial> from) {
   Result<Screening> first = screen(*baseline_, prepared(fit_), screening);
   if (!first) return fail(first.error());
   say_how_likely_by_noise(*first);
+  std::optional<Trial> common;  // the laws found beside a value of what wears for each test
   if (!from && !windowed() && may_age(asset_, fit_) && result_.statistically_significant) {
     own_ = each_its_own(what_wears(asset_), fit_, *baseline_, options.threads);
     if (own_ && !look_beside_own(*own_, {}, options)) own_.reset();
@@ -85,6 +87,11 @@ Status Analysis::look_from(std::optional<Trial> from) {
       if (look_beside_what_differs(beside, options)) return {};
       fit_.may_differ.clear();
       if (!time_.deadline().passed()) own_.reset();
+    }
+    if (own_ && !own_->naming.best.effects.empty()) common = found_in_common(*own_);
+    if (common && another_differs_rather(*common)) {
+      from = common;
+      own_.reset();
     }
     if (own_ && explains_everything(*own_, options)) {
       take_over(*own_);
@@ -96,7 +103,7 @@ Status Analysis::look_from(std::optional<Trial> from) {
     }
   }
   if (own_) fit_.may_differ.clear();  // nothing else was found to differ beside it
-  if (own_ && !own_->naming.best.effects.empty()) from = found_in_common(*own_);
+  if (own_ && common) from = std::move(common);
   if (own_) tell("looking again, with one value for all tests", 0.5);
   if (!from && options.maximum_laws > 0 && excess(*baseline_) > kGross && !a_value_ends_it(*first)) {
     tell("setting out from the recorded states", 0.2);
@@ -127,6 +134,15 @@ Status Analysis::look_from(std::optional<Trial> from) {
   if (!own_->goes_its_way) ask_values_in_place_of_own();
   if (!why_none_) take_over(*own_);
   return {};
+}
+
+bool Analysis::another_differs_rather(const Trial& common) const {
+  std::vector<std::string> asked = fit_.may_differ;
+  asked.push_back(what_wears(asset_));
+  const Trial found = with_derivatives(common, prepared(fit_), options_.threads);
+  const std::vector<OwnGain> gains = gains_of_own_values(*found.model, asked);
+  const auto wear = std::ranges::find(gains, what_wears(asset_), &OwnGain::parameter);
+  return wear != gains.end() && gains.front().gain > wear->gain + kCannotTell * dispersion(*found.model);
 }
 
 bool Analysis::a_value_ends_it(const Screening& first) const {

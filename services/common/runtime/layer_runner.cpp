@@ -327,7 +327,7 @@ Status LayerRunner::take(Message message, const ActRecord* record) {
       return {};
     }
   }
-  if (is_of_a_service(name_of(topic_of(message)))) note_conclusion(message, refused);
+  if (is_of_a_service(name_of(topic_of(message))) && is_numbered(message)) note_conclusion(message, refused);
   if (!refused) admission_.note_asset(asset_of(message));
   if (!refused && record == nullptr) count_act(message);
   const bool for_desk = is_for_desk(message, record != nullptr);

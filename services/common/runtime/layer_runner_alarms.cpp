@@ -156,7 +156,8 @@ void LayerRunner::note_refused_test(const RawSamples& raw, const std::string& re
 
 /// What another layer concluded and this one refuses is missing from all that would follow from it, and nobody sends it
 /// again: a test without advice, which looks like one that needs none. The next one that is taken ends it. What is
-/// damaged in its writer's journal is told there. Where there is a desk, it keeps what became of the alarm.
+/// damaged in its writer's journal is told there. (What has no number comes from no layer: strangers are told apart.)
+/// Where there is a desk, it keeps what became of the alarm.
 void LayerRunner::note_conclusion(const Message& message, const std::optional<std::string>& refused) {
   const std::string asset_id = asset_of(message), topic(name_of(topic_of(message)));
   ServiceAlarm alarm{.kind = kRefusedConclusion,

@@ -68,7 +68,4 @@ void read_number_attributes(const DescriptionReader& reader, const pugi::xml_nod
 void add_states(const DescriptionReader& reader, const pugi::xml_node& at, std::size_t derivative,
                 ModelDescription& description);
 
-/// The SI unit of a unit that is used and not defined: by its own name, where that is a usual one of more than a letter.
-[[nodiscard]] std::optional<SiUnit> si_unit_called(const std::string& name);
-
 }  // namespace sealwatch::fmi

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <set>
 #include <sstream>
 
 #include "sealwatch/core/file.hpp"
@@ -74,19 +73,6 @@ class PlantFileWriter {
     return size == 0.0 ? 1.0 : 10.0 * size;
   }
 
-  [[nodiscard]] std::string units_without_meaning() const {
-    constexpr std::size_t kMostNamed = 10;
-    std::set<std::string> names;
-    for (const Variable& variable : fmu_.variables)
-      if (!variable.unit.empty() && variable.unit != "1" && variable.unit != "-" && !fmu_.si_unit_of(variable))
-        names.insert(variable.unit);
-    std::string list;
-    std::size_t count = 0;
-    for (const std::string& name : names)
-      if (++count <= kMostNamed) list.append(list.empty() ? "" : ", ").append(name);
-    return list + (count > kMostNamed ? " and " + std::to_string(count - kMostNamed) + " more" : "");
-  }
-
   void head() {
     const std::string version = fmu_.version == Version::fmi2 ? "FMI 2.0" : "FMI 3.0";
     out_ << "# A plant for sealwatch around the FMU " << in_comment(path_) << " (" << version << ", "
@@ -95,9 +81,6 @@ class PlantFileWriter {
          << "# Written by `sealwatch plant import`; complete what the comments ask for, then `sealwatch plant check` "
             "it.\n"
          << "# All units are SI: the FMU's own are converted.\n";
-    if (const std::string unknown = units_without_meaning(); !unknown.empty())
-      out_ << "# Its units " << in_comment(unknown)
-           << " are defined nowhere: numbers in them are taken as they are, in the unit that stands here.\n";
     if (file_.interface().needs_execution_tool)
       out_ << "# It runs only where " << (fmu_.tool.empty() ? "the tool that made it" : in_comment(fmu_.tool))
            << " is installed (needsExecutionTool).\n";

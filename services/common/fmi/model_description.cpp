@@ -158,11 +158,7 @@ const Unit* ModelDescription::find_unit(std::string_view unit) const {
 
 std::optional<SiUnit> ModelDescription::si_unit_of(const Variable& variable) const {
   const Unit* unit = find_unit(variable.unit);
-  if (unit == nullptr || !unit->has_base) {
-    std::optional<SiUnit> known = si_unit_called(variable.unit);
-    if (known && variable.relative) known->conversion.offset = 0.0;
-    return known;
-  }
+  if (unit == nullptr || !unit->has_base) return std::nullopt;
   return SiUnit{si_name(*unit), {unit->factor, variable.relative ? 0.0 : unit->offset}};
 }
 

@@ -3,8 +3,7 @@
 #include <sstream>
 #include <utility>
 
-#include "sealwatch/core/units.hpp"
-#include "services/common/fmi/description_reader.hpp"
+#include "services/common/fmi/model_description.hpp"
 #include "services/common/units/unit_conversion.hpp"
 
 namespace sealwatch::fmi {
@@ -61,17 +60,6 @@ const char* angular_name(const Unit& unit) {
 }
 
 }  // namespace
-
-std::optional<SiUnit> si_unit_called(const std::string& name) {
-  if (name.empty()) return std::nullopt;
-  const Result<UnitConversion> exact = sealwatch::find_unit(name);
-  if (exact) return SiUnit{std::string(exact->si_unit), {exact->scale, exact->offset}};
-  if (name.size() == 1 || !is_unit(name)) return std::nullopt;  // C is a charge to some, a temperature to others
-  for (const KnownUnit& known : kKnown)
-    if (const Result<UnitConversion> unit = convert_unit(name, known.name))
-      return SiUnit{known.name, {unit->scale, unit->offset}};
-  return std::nullopt;
-}
 
 std::string si_name(const Unit& unit) {
   if (!unit.has_base) return "1";

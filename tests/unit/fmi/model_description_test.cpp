@@ -193,38 +193,6 @@ TEST(ModelDescription, AnEnumerationStartsWithItsFirstValue) {
   }
 }
 
-// Tools name a unit and define it nowhere, or without its base units. Taken as plain numbers, 3 bar were 3 Pa.
-TEST(ModelDescription, AUnitThatIsNotDefinedIsKnownByItsName) {
-  const std::string good = description_of(spring_return("fmu_spring_return2"));
-  const auto first_unit = [&](const std::string& name, const std::string& definition, const std::string& more = "") {
-    std::string text = replaced(good, "<UnitDefinitions>", "<UnitDefinitions>" + definition);
-    text = replaced(text, "</ModelVariables>",
-                    "<ScalarVariable name=\"tried\" valueReference=\"9000\"><Real unit=\"" + name + "\" " + more +
-                        "/></ScalarVariable></ModelVariables>");
-    const auto description = read_model_description("m.fmu", text);
-    EXPECT_TRUE(description) << description.error().describe();
-    return description->si_unit_of(*description->find("tried"));
-  };
-  for (const char* definition : {"", "<Unit name=\"bar\"/>"}) {
-    const auto bar = first_unit("bar", definition);
-    ASSERT_TRUE(bar) << definition;
-    EXPECT_EQ(bar->name, "Pa");
-    EXPECT_DOUBLE_EQ(bar->conversion.factor, 1e5);
-  }
-  const auto temperature = first_unit("degC", ""), difference = first_unit("degF", "", "relativeQuantity=\"true\"");
-  ASSERT_TRUE(temperature && difference);
-  EXPECT_DOUBLE_EQ(temperature->conversion.offset, 273.15) << "the unit of the test's own definitions";
-  EXPECT_EQ(difference->name, "K");
-  EXPECT_DOUBLE_EQ(difference->conversion.offset, 0.0);
-  const auto power = first_unit("kW", "");
-  ASSERT_TRUE(power);
-  EXPECT_EQ(power->name, "W");
-  EXPECT_DOUBLE_EQ(power->conversion.factor, 1e3);
-  EXPECT_FALSE(first_unit("C", "")) << "a charge or a temperature";
-  EXPECT_FALSE(first_unit("widgets", ""));
-  EXPECT_EQ(first_unit("bar", "<Unit name=\"bar\"><BaseUnit m=\"1\"/></Unit>")->name, "m") << "what is defined holds";
-}
-
 TEST(ModelDescription, UnitsGetTheirUsualNames) {
   const auto name = [](BaseExponents exponents) {
     return si_name(Unit{.name = {}, .has_base = true, .exponents = exponents});

@@ -60,13 +60,13 @@ class Analysis {
   // a seal that wears leaves nothing. What else differs from test to test is asked beside the laws. `from`: what is
   // known already.
   Status look_from(std::optional<Trial> from);
-  // Sensors that were off beside what differs are so in common; also where the time to search is over.
-  /// Whether another parameter with a value for each test promises more than what wears, beside the same laws: wear fills
-  /// its place.
+  // Whether another parameter with a value for each test promises more than what wears, beside the same laws: wear fills
+  // its place.
   [[nodiscard]] bool another_differs_rather(const Trial& common) const;
-  /// Whether one value of the asset file leaves no gross misfit. Set out from the recorded states, several laws would fill
-  /// its place.
+  // Whether one value of the asset file leaves no gross misfit. Set out from the recorded states, several laws would fill
+  // its place.
   [[nodiscard]] bool a_value_ends_it(const Screening& first) const;
+  // Sensors that were off beside what differs are so in common; also where the time to search is over.
   Result<Screening> look_with_inexact_sensors(const std::vector<KnownValue>& known, const ScreeningOptions& options);
   // Also where the time to search is over: it is what is told then.
   std::optional<Trial> found_in_common(const OwnValues& own);

@@ -89,11 +89,8 @@ Status Analysis::look_from(std::optional<Trial> from) {
       if (!time_.deadline().passed()) own_.reset();
     }
     if (own_ && !own_->naming.best.effects.empty()) common = found_in_common(*own_);
-    if (common && another_differs_rather(*common)) {
-      from = common;
-      own_.reset();
-    }
-    if (own_ && explains_everything(*own_, options)) {
+    const bool another = common && another_differs_rather(*common);
+    if (own_ && !another && explains_everything(*own_, options)) {
       take_over(*own_);
       return {};
     }
@@ -101,9 +98,10 @@ Status Analysis::look_from(std::optional<Trial> from) {
       first = look_with_inexact_sensors(own_->fit.known, screening);
       if (!first) return fail(first.error());
     }
+    if (another) own_.reset();  // its laws are where the search sets out
   }
   if (own_) fit_.may_differ.clear();  // nothing else was found to differ beside it
-  if (own_ && common) from = std::move(common);
+  if (common) from = std::move(common);
   if (own_) tell("looking again, with one value for all tests", 0.5);
   if (!from && options.maximum_laws > 0 && excess(*baseline_) > kGross && !a_value_ends_it(*first)) {
     tell("setting out from the recorded states", 0.2);
@@ -139,10 +137,9 @@ Status Analysis::look_from(std::optional<Trial> from) {
 bool Analysis::another_differs_rather(const Trial& common) const {
   std::vector<std::string> asked = fit_.may_differ;
   asked.push_back(what_wears(asset_));
-  const Trial found = with_derivatives(common, prepared(fit_), options_.threads);
-  const std::vector<OwnGain> gains = gains_of_own_values(*found.model, asked);
+  const std::vector<OwnGain> gains = gains_of_own_values(*common.model, asked);
   const auto wear = std::ranges::find(gains, what_wears(asset_), &OwnGain::parameter);
-  return wear != gains.end() && gains.front().gain > wear->gain + kCannotTell * dispersion(*found.model);
+  return wear != gains.end() && gains.front().gain > wear->gain + kCannotTell * dispersion(*common.model);
 }
 
 bool Analysis::a_value_ends_it(const Screening& first) const {

@@ -1,5 +1,6 @@
 // Any text as a message in JSON, as `sealwatch publish` and the journal read it; the first byte chooses the topic: an error
-// that says what is wrong, or a message that stays what it is when it is written and read again.
+// that says what is wrong, or a message that stays what it is when it is written and read again. With a blank behind it,
+// it is read by way of a document tree, to the same.
 #include <cstdint>
 #include <cstdlib>
 #include <string>
@@ -26,6 +27,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const auto topic = static_cast<Topic>(choice);
   const Result<Message> message = message_from_json(topic, text);
+  const Result<Message> by_tree = message_from_json(topic, std::string(text) + " ");
+  require(message.has_value() == by_tree.has_value());
+  if (message) require(to_json(*message, JsonForm::exact) == to_json(*by_tree, JsonForm::exact));
   if (!message) return require(!message.error().rule.empty()), 0;
   const std::string written = to_json(*message, JsonForm::exact);
   const Result<Message> again = message_from_json(topic, written);

@@ -1,12 +1,11 @@
 #include "services/common/message/json.hpp"
 #include "sealwatch/core/json_depth.hpp"
 #include "sealwatch/message/blank.hpp"
+#include "services/common/message/base64.hpp"
+#include "services/common/message/own_json.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <type_traits>
@@ -16,53 +15,6 @@ namespace sealwatch {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-static_assert(std::endian::native == std::endian::little, "the exact form stores little-endian doubles");
-
-constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-
-void append_base64(const std::vector<double>& values, std::string& text) {
-  const std::size_t size = values.size() * sizeof(double);
-  std::vector<unsigned char> bytes(size + 2);  // and what fills the last group
-  if (size != 0) std::memcpy(bytes.data(), values.data(), size);
-  const std::size_t begin = text.size();
-  text.resize(begin + (size + 2) / 3 * 4);
-  char* to = text.data() + begin;
-  for (std::size_t k = 0; k < size; k += 3, to += 4) {
-    const std::uint32_t group = std::uint32_t{bytes[k]} << 16U | std::uint32_t{bytes[k + 1]} << 8U | bytes[k + 2];
-    for (unsigned c = 0; c < 4; ++c) to[c] = kAlphabet[group >> (18U - 6U * c) & 63U];
-  }
-  for (std::size_t filler = (3 - size % 3) % 3; filler != 0; --filler) *(to - filler) = '=';
-}
-
-bool from_base64(const std::string& text, std::vector<double>& values) {
-  static const auto decode = [] {
-    std::array<int, 256> table{};
-    table.fill(-1);
-    for (std::size_t k = 0; k < kAlphabet.size(); ++k)
-      table[static_cast<unsigned char>(kAlphabet[k])] = static_cast<int>(k);
-    return table;
-  }();
-  std::string bytes;
-  bytes.reserve(text.size() / 4 * 3);
-  std::uint32_t group = 0;
-  int bits = 0;
-  for (const char c : text) {
-    if (c == '=') break;
-    const int digit = decode[static_cast<unsigned char>(c)];
-    if (digit < 0) return false;
-    group = group << 6U | static_cast<std::uint32_t>(digit);
-    bits += 6;
-    if (bits >= 8) {
-      bits -= 8;
-      bytes += static_cast<char>(group >> static_cast<unsigned>(bits) & 255U);
-    }
-  }
-  if (bytes.size() % sizeof(double) != 0) return false;
-  values.resize(bytes.size() / sizeof(double));
-  if (!values.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
-  return true;
-}
 
 bool is_plain(char c) { return c >= ' ' && c < '\x7f' && c != '"' && c != '\\'; }
 
@@ -263,6 +215,13 @@ Result<AlarmEntry> alarm_from_json(std::string_view text) {
   return entry;
 }
 
+bool is_string_read_into(std::string_view quoted, std::string& text) {
+  const Json json = Json::parse(quoted, nullptr, false);
+  if (!json.is_string()) return false;
+  text = json.get<std::string>();
+  return true;
+}
+
 Result<Message> message_from_json(Topic topic, std::string_view text) {
   const auto wrong = [topic](std::string place, std::string rule) {
     return fail(Error{.file = "message of topic " + std::string(name_of(topic)),
@@ -271,10 +230,12 @@ Result<Message> message_from_json(Topic topic, std::string_view text) {
                       .rule = std::move(rule),
                       .advice = {}});
   };
+  Message message = blank_message(topic);
+  if (std::visit([text](auto& m) { return OwnJson(text).is_read_into(m); }, message)) return message;
   if (is_nested_too_deeply(text)) return wrong({}, kNestedTooDeeply);
   const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) return wrong({}, "is not JSON");
-  Message message = blank_message(topic);
+  message = blank_message(topic);
   try {
     std::visit([&json](auto& m) { decode(json, {}, m); }, message);
   } catch (const LayoutError& error) {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "sealwatch/core/json_depth.hpp"
+#include "services/common/message/own_json.hpp"
 #include "tests/unit/message/fill.hpp"
 
 namespace sealwatch {
@@ -27,6 +28,21 @@ TYPED_TEST(EveryTopic, ComesBackFieldByFieldInBothForms) {
       const Result<Message> back = message_from_json(topic_of(message), to_json(message, form));
       ASSERT_TRUE(back.has_value()) << back.error().describe();
       EXPECT_EQ(*back, message) << to_json(message);
+    }
+  }
+}
+
+/// Blanks and members in another order are read by way of a document tree, which what we wrote is not.
+TYPED_TEST(EveryTopic, IsReadAlikeWithAndWithoutADocumentTree) {
+  for (const std::size_t length : {0U, 1U, 3U}) {
+    const Message message = testing::filled<TypeParam>(length);
+    for (const JsonForm form : {JsonForm::readable, JsonForm::exact}) {
+      const std::string text = to_json(message, form);
+      TypeParam direct;
+      ASSERT_TRUE(OwnJson(text).is_read_into(direct)) << text;
+      EXPECT_EQ(Message(direct), message);
+      EXPECT_FALSE(OwnJson(text + " ").is_read_into(direct));
+      EXPECT_EQ(message_from_json(topic_of(message), text + " ").value(), message);
     }
   }
 }
@@ -116,6 +132,72 @@ TEST(Json, WhatIsNestedTooDeeplyIsNotRead) {
   }
   const std::string brackets(100, '[');
   EXPECT_TRUE(message_from_json(Topic::raw_samples, R"({"asset_id": "\"{)" + brackets + R"(\\"})")) << "in a string";
+}
+
+/// Each text is read by way of a document tree too, as a blank stands behind it: to the same, or to none.
+TEST(Json, OwnReaderReadsNothingThatIsNoJson) {
+  const auto same = [](const std::string& member) {
+    const std::string text = "{" + member + "}";
+    const auto read = message_from_json(Topic::leakage_estimate, text);
+    const auto by_tree = message_from_json(Topic::leakage_estimate, text + " ");
+    EXPECT_EQ(read.has_value(), by_tree.has_value()) << text;
+    if (read && by_tree) {
+      EXPECT_EQ(to_json(*read, JsonForm::exact), to_json(*by_tree, JsonForm::exact)) << text;
+    }
+  };
+  for (const char* number : {"0",
+                             "-0",
+                             "-0.0",
+                             "01",
+                             "1.",
+                             ".5",
+                             "1.e5",
+                             "1e5",
+                             "1E5",
+                             "1e",
+                             "1e+5",
+                             "1e-400",
+                             "1e400",
+                             "-",
+                             "+1",
+                             "0x1",
+                             "18446744073709551615",
+                             "18446744073709551616",
+                             "-9223372036854775809",
+                             "0.1000000000000000055511151231257827021181583404541015625",
+                             "4.9e-324",
+                             "NaN",
+                             "inf",
+                             "null",
+                             "\"nan\"",
+                             "\"inf\"",
+                             "\"-inf\"",
+                             "\"NaN\"",
+                             "true",
+                             "1 "})
+    for (const char* field : {"\"resistance_Pa_s_m3\"", "\"header\":{\"stream_sequence\""})
+      same(std::string(field) + ":" + number + (field[1] == 'h' ? "}" : ""));
+  for (const char* string : {"\"a", "a\"", "\"\\\"\"", "\"\\", "\"\\u00e9\"", "\"\\u00\"", "\"\xc3\xa9\"", "\"\xc3\"",
+                             "\"\x01\"", "\"\x7f\"", "\"\\x\"", "\"\"\"", "1", "null"})
+    same(std::string("\"asset_id\":") + string);
+  for (const char* object :
+       {"", ",", "\"asset_id\":\"a\",", ",\"asset_id\":\"a\"", "\"asset_id\":\"a\",\"asset_id\":\"b\"",
+        "\"asset_id\":\"a\",\"header\":{}", "\"unknown\":1", "\"header\":{}}", "\"header\":{",
+        "\"header\":{\"source_ids\":[]}", "\"header\":{\"source_ids\":[,]}", "\"header\":{\"source_ids\":[\"a\",]}",
+        "\"header\":{\"source_ids\":[\"a\"}", "\"header\":{\"clock_quality\":\"synchronised\"}",
+        "\"header\":{\"clock_quality\":\"good\"}", "\"header\":{\"replay\":true}", "\"header\":{\"replay\":tru}"})
+    same(object);
+}
+
+TEST(Json, OwnReaderReadsTextsOfPeople) {
+  Acknowledgement message;
+  for (const std::string& text :
+       {std::string("say \"no\"\\\n\t"), std::string("m\u00b3, \u03b8"), std::string("a\0b", 3)}) {
+    message.remark = text;
+    Acknowledgement read;
+    ASSERT_TRUE(OwnJson(to_json(Message(message))).is_read_into(read));
+    EXPECT_EQ(read.remark, text);
+  }
 }
 
 TEST(Json, NamesTheFieldThatIsWrong) {

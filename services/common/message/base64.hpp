@@ -1,0 +1,14 @@
+// Numbers as base64 of little-endian doubles: bit-exact and fast.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sealwatch {
+
+void append_base64(const std::vector<double>& values, std::string& text);
+/// False where the text is no base64 of doubles.
+[[nodiscard]] bool from_base64(std::string_view text, std::vector<double>& values);
+
+}  // namespace sealwatch

@@ -5,6 +5,7 @@
 
 #include "sealwatch/model/plant_description.hpp"
 #include "services/cli/log_offer.hpp"
+#include "services/common/recording/cells.hpp"
 #include "services/common/recording/log_layout.hpp"
 #include "services/common/recording/recording_file.hpp"
 #include "services/common/units/unit_conversion.hpp"
@@ -47,6 +48,35 @@ PlantDescription plant_of(const Offer& offer, const ChannelMap& map) {
   return plant;
 }
 
+Result<Recording> read_offered(const std::string& file, const Offer& offer, ChannelMap map) {
+  const auto is_time = [](const OfferedColumn& column) { return split_header_cell(column.text).name == "time"; };
+  if (!map.columns.contains("time") && std::ranges::none_of(offer.columns, is_time))
+    map.columns["time"] = guess_time(offer);
+  return read_recording(file, plant_of(offer, map), map);
+}
+
+/// Whether the time's first cell is what the map says: a pattern of dates does not fit a count of seconds.
+bool fits_time(const Offer& offer, std::size_t column, const ColumnMapping& mapping) {
+  Result<TimeFormat> format = TimeFormat::of(mapping.unit.empty() ? "s" : mapping.unit);
+  const std::vector<std::string>& cells = offer.cells[column];
+  return format && (cells.empty() || format->seconds(cells.front(), offer.layout.decimal));
+}
+
+/// Whether the file has what a row of a map of another file tells of.
+bool fits(const Offer& offer, const std::string& channel, const ColumnMapping& mapping) {
+  if (channel != "time") return find_offered(offer.columns, mapping.column).has_value();
+  if (mapping.column == kCountOfRows) return !has_time(offer);
+  std::string_view rest = mapping.column;
+  const bool whole = rest.find(kDayAndTime) == std::string_view::npos;
+  for (std::size_t plus = 0; plus != std::string_view::npos;) {
+    plus = rest.find(kDayAndTime);
+    const Result<std::size_t> part = find_offered(offer.columns, std::string(rest.substr(0, plus)));
+    if (!part || (whole && offer.text && !fits_time(offer, *part, mapping))) return false;
+    if (plus != std::string_view::npos) rest.remove_prefix(plus + kDayAndTime.size());
+  }
+  return true;
+}
+
 }  // namespace
 
 Result<Recording> read_any_channels(const std::string& file, const ChannelMap& given) {
@@ -59,10 +89,21 @@ Result<Recording> read_any_channels(const std::string& file, const ChannelMap& g
       offer = std::move(without);
     }
   if (!offer) return fail(offer.error());
-  const auto is_time = [](const OfferedColumn& column) { return split_header_cell(column.text).name == "time"; };
-  if (!map.columns.contains("time") && std::ranges::none_of(offer->columns, is_time))
-    map.columns["time"] = guess_time(*offer);
-  return read_recording(file, plant_of(*offer, map), map);
+  return read_offered(file, *offer, std::move(map));
+}
+
+Result<Recording> read_simulated_channels(const std::string& file, const ChannelMap& of_recording) {
+  ChannelMap map = of_recording;
+  Result<Offer> offer = offer_of(file, map.log);
+  const auto is_foreign = [&](const auto& entry) { return !fits(*offer, entry.first, entry.second); };
+  if (!offer || std::ranges::any_of(map.columns, is_foreign))
+    if (Result<Offer> without = offer_of(file, {})) {  // laid out by another tool
+      map.log = {};
+      offer = std::move(without);
+    }
+  if (!offer) return fail(offer.error());
+  std::erase_if(map.columns, is_foreign);
+  return read_offered(file, *offer, std::move(map));
 }
 
 }  // namespace sealwatch::cli

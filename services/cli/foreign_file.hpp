@@ -13,4 +13,8 @@ namespace sealwatch::cli {
 /// those that `map` renames. The time is `map`'s, or the column called time, t, Timestamp or Zeit, or the first.
 [[nodiscard]] Result<Recording> read_any_channels(const std::string& file, const ChannelMap& map);
 
+/// The same of a simulation's trace beside a recording: of the recording's map those rows count that the file has the
+/// columns of; its other columns have names of their own.
+[[nodiscard]] Result<Recording> read_simulated_channels(const std::string& file, const ChannelMap& of_recording);
+
 }  // namespace sealwatch::cli

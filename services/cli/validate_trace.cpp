@@ -111,7 +111,7 @@ int run_validate_trace(const ValidateOptions& options) {
                      .advice = "sealwatch validate --simulated SIM.csv RECORDED.csv"}),
            kBadInput;
   const Result<Recording> recorded = read_any_channels(options.recordings.front(), known->map);
-  const Result<Recording> simulated = recorded ? read_any_channels(options.simulated, known->map) : recorded;
+  const Result<Recording> simulated = recorded ? read_simulated_channels(options.simulated, known->map) : recorded;
   if (!simulated) return complain(simulated.error()), kBadInput;
   tell_warnings(*recorded), tell_warnings(*simulated);
   Progress progress("comparing", 1 + recorded->samples.channels.size());

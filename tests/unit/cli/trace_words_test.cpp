@@ -85,5 +85,29 @@ TEST(AnyChannels, AMapOfTheOtherFileSaysNothingOfThisOnesLayout) {
   EXPECT_EQ(recording->samples.find("pressure")->values.back(), 1.5e5);
 }
 
+// A simulation has the log's columns, or names of its own, or some of each; its time seldom is a clock.
+TEST(AnyChannels, ASimulationIsReadByTheLogsMapOrItsOwnNames) {
+  const std::string file = ::testing::TempDir() + "sealwatch_any_channels.csv";
+  ChannelMap map{.columns = {{"time", {.column = "Day + Time", .unit = "%d.%m.%Y %H:%M:%S"}},
+                             {"pressure", {.column = "PT", .unit = "bar"}},
+                             {"position", {.column = "LVDT", .unit = "mm"}}},
+                 .log = {}};
+  map.log.delimiter = "semicolon";
+  const auto read = [&](const std::string& text) {
+    std::ofstream(file) << text;
+    const Result<Recording> recording = read_simulated_channels(file, map);
+    EXPECT_TRUE(recording) << recording.error().describe();
+    EXPECT_EQ(recording->samples.find("pressure")->values.back(), 1.5e5) << text;
+    EXPECT_EQ(recording->samples.find("position")->values.back(), 0.002) << text;
+    EXPECT_NEAR(recording->samples.time_s.back() - recording->samples.time_s.front(), 0.1, 1e-9) << text;
+  };
+  read("Day;Time;PT;LVDT\n12.04.2031;03:00:00,0;1.25;1\n12.04.2031;03:00:00,1;1.5;2\n");
+  read("Time,PT,LVDT\n0,1.25,1\n0.1,1.5,2\n");
+  read("time[s],pressure[bar],position[m]\n0,1.25,0.001\n0.1,1.5,0.002\n");
+  read("t,PT,position\n0,1.25,0.001\n0.1,1.5,0.002\n");
+  map.columns["time"] = {.column = "Time", .unit = "%H:%M:%S"};
+  read("Time,PT,LVDT\n0,1.25,1\n0.1,1.5,2\n");
+}
+
 }  // namespace
 }  // namespace sealwatch::cli

@@ -516,10 +516,12 @@ void note_day_elsewhere(Understood& log) {
 void note_unit_of_time(Understood& log, std::size_t time) {
   const ColumnMapping& mapping = log.map.columns.at("time");
   const Result<TimeFormat> format = TimeFormat::of(mapping.unit);
-  if ((format && format->is_absolute()) || seconds_of_one(log.offer.columns[time])) return;
-  const std::string count = "{column: " + text::quoted(mapping.column) + ", unit: s, scale: SECONDS_BETWEEN_SAMPLES}";
+  const bool said = !unit_of(log.offer.columns[time]).empty() || seconds_of_one(log.offer.columns[time]);
+  const bool count = !format || !format->is_absolute() || mapping.unit.find(" since ") != std::string::npos;
+  if (said || !count) return;
+  const std::string steps = "{column: " + text::quoted(mapping.column) + ", unit: s, scale: SECONDS_BETWEEN_SAMPLES}";
   log.remarks.push_back("the log gives no unit for the time, column " + text::quoted(mapping.column) + ": taken for " +
-                        mapping.unit + (counts_by_one(log.offer, time) ? "; if it counts samples: " + count : ""));
+                        mapping.unit + (counts_by_one(log.offer, time) ? "; if it counts samples: " + steps : ""));
 }
 
 Result<Understood> understand(const AssetNewOptions& options) {

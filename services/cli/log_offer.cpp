@@ -199,17 +199,23 @@ std::optional<std::size_t> likely_time_column(const Offer& offer) {
   return offer.step_s ? std::nullopt : first(rising);
 }
 
+std::string unit_of_count(const Offer& offer, std::size_t column, const std::vector<double>& numbers) {
+  if (std::string said = unit_of(offer.columns[column]); !said.empty()) return said;
+  if (std::string said = unit_of_time(offer.columns[column]); !said.empty()) return said;
+  for (const auto& [unit, in_s] : {std::pair{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}})  // those since 1970 are large
+    if (numbers.empty() || numbers.back() * in_s <= TestLimits{}.largest_time_s) return unit;
+  return "ns";
+}
+
 std::string time_unit(const Offer& offer, std::size_t column) {
   if (std::string format = time_format_of(offer.cells[column]); !format.empty()) return format;
   const std::vector<double> numbers = numbers_of(offer.cells[column], offer.layout.decimal);
   constexpr double kDatenumOfExcel = 693960.0;
   if (are_days_since(0.0, numbers)) return "excel";
   if (are_days_since(kDatenumOfExcel, numbers)) return "datenum";
-  if (std::string said = unit_of(offer.columns[column]); !said.empty()) return said;
-  if (std::string said = unit_of_time(offer.columns[column]); !said.empty()) return said;
-  for (const auto& [unit, in_s] : {std::pair{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}})  // those since 1970 are large
-    if (numbers.empty() || numbers.back() * in_s <= TestLimits{}.largest_time_s) return unit;
-  return "ns";
+  const std::string unit = unit_of_count(offer, column, numbers);
+  const std::string dated = numbers.empty() ? "" : since_1970(unit, numbers.front());
+  return dated.empty() ? unit : dated;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <ctime>
@@ -34,6 +35,14 @@ std::optional<std::int64_t> fraction_of_a_second(std::string_view text) {
 }
 
 bool is_digit(char letter) { return letter >= '0' && letter <= '9'; }
+
+/// A switch's state in words, "true", "FALSE": 1 or 0.
+std::optional<double> truth_of(std::string_view cell) {
+  const auto is = [&](std::string_view word) {
+    return std::ranges::equal(trim(cell), word, {}, [](unsigned char letter) { return std::tolower(letter); });
+  };
+  return is("true") ? std::optional(1.0) : is("false") ? std::optional(0.0) : std::nullopt;
+}
 
 /// The fraction of a second that stands before the end of the time, "03:00:00.25 AM", taken out of `text`: strptime does
 /// not know it.
@@ -107,7 +116,7 @@ std::string_view trim(std::string_view text) {
 bool holds_no_value(std::string_view cell) {
   const bool is_word = (trim(cell).size() > 1 && trim(cell).front() == '#' && !is_digit(trim(cell)[1])) ||
                        cell.find(".#") != std::string_view::npos;
-  return is_word || cell.find_first_of("0123456789") == std::string_view::npos;
+  return is_word || (cell.find_first_of("0123456789") == std::string_view::npos && !truth_of(cell));
 }
 
 Result<double> parse_number(std::string_view text, char decimal) {
@@ -141,7 +150,10 @@ Result<double> parse_number(std::string_view text, char decimal) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error == std::errc::result_out_of_range) return fail("is out of a double's range");
-  if (error != std::errc{} || end != text.data() + text.size()) return fail("must be a number");
+  if (error != std::errc{} || end != text.data() + text.size()) {
+    const std::optional<double> truth = truth_of(text);
+    return truth ? Result<double>(*truth) : fail("must be a number");
+  }
   if (!std::isfinite(value)) return fail("must be a finite number", "leave out the whole row of a missing sample");
   return value;
 }
@@ -178,7 +190,7 @@ Result<TimeFormat> TimeFormat::of(std::string_view unit) {
     const Result<UtcTime> begin = parse_utc(trim(unit.substr(since + 7)));
     if (!counted || !begin)
       return fail(error_at({}, unit, "must read as 'days since 2031-04-12', with a unit of time and a UTC time"));
-    counted->base_ = *begin;
+    counted->since_ = *begin;
     return counted;
   } else if (unit.find('%') != std::string_view::npos) {
     format.kind_ = Kind::pattern;
@@ -218,7 +230,7 @@ Result<double> TimeFormat::seconds(std::string_view cell, char decimal) {
     if (!number && number.error().advice.empty())
       return fail(number.error().rule,
                   "take the row out where it is no sample, as that of a summary or another header");
-    return number ? Result<double>(to_s_.to_si(*number)) : number;
+    return number ? counted(*number) : number;
   }
   const Result<UtcTime> time = moment(cell, decimal);
   if (!time) return fail(time.error().rule, time.error().advice);
@@ -251,8 +263,21 @@ UtcTime TimeFormat::past_midnight(UtcTime time) {
   return time;
 }
 
+/// The differences of a number that counts from long ago have more digits than it.
+Result<double> TimeFormat::counted(double number) {
+  if (!since_) return to_s_.to_si(number);
+  if (!first_) {
+    constexpr double kFarthest_s = 9e9;
+    const double since_s = to_s_.to_si(number);
+    if (!(std::abs(since_s) < kFarthest_s)) return fail("must be a time of the years 1700 to 2250");
+    first_ = number;
+    base_ = UtcTime{since_->nanoseconds + std::llround(since_s * 1e6) * 1000};
+  }
+  return to_s_.scale * (number - *first_);
+}
+
 Result<double> TimeFormat::seconds(double number) {
-  if (kind_ == Kind::number) return to_s_.to_si(number);
+  if (kind_ == Kind::number) return counted(number);
   if (kind_ != Kind::excel) return fail("must be text for a time of this form", "give its unit: s, ms, ns or excel");
   const Result<UtcTime> time = from_excel(number - days_before_excel_);
   if (!time) return fail(time.error());
@@ -280,6 +305,13 @@ std::optional<UtcTime> TimeFormat::clock(double seconds) const {
 
 bool TimeFormat::has_date() const {
   return kind_ != Kind::pattern || pattern_.find_first_of("djFDxcs") != std::string::npos;
+}
+
+std::string since_1970(const std::string& unit, double number) {
+  constexpr double kYear_s = 365.25 * kSecondsPerDay, kFirst = 30.0, kLast = 85.0;  // LabVIEW's, from 1904, are larger
+  const Result<UnitConversion> to_s = convert_unit(unit, "s");
+  const bool fits = to_s && to_s->to_si(number) > kFirst * kYear_s && to_s->to_si(number) < kLast * kYear_s;
+  return fits ? unit + " since 1970-01-01" : "";
 }
 
 std::optional<UtcTime> TimeFormat::utc(double seconds) const { return has_date() ? clock(seconds) : std::nullopt; }

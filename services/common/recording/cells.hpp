@@ -30,7 +30,7 @@ class TimeFormat {
   [[nodiscard]] static Result<TimeFormat> of(std::string_view unit);
 
   /// Whether it tells the hour and the day, so that the recording's start is known.
-  [[nodiscard]] bool is_absolute() const { return kind_ != Kind::number; }
+  [[nodiscard]] bool is_absolute() const { return kind_ != Kind::number || since_.has_value(); }
   /// Whether it tells the day; of an absolute one.
   [[nodiscard]] bool has_date() const;
   /// `scale` number + `offset` is in the format's unit: of a count of samples, say. An Error where it is a clock.
@@ -48,19 +48,26 @@ class TimeFormat {
  private:
   enum class Kind { number, iso8601, excel, pattern };
   [[nodiscard]] Result<UtcTime> moment(std::string_view cell, char decimal) const;
+  [[nodiscard]] Result<double> counted(double number);
   [[nodiscard]] UtcTime past_midnight(UtcTime time);
 
   Kind kind_ = Kind::number;
   UnitConversion to_s_;
   double days_before_excel_ = 0.0;
   std::string pattern_;
-  std::optional<UtcTime> base_;
+  std::optional<UtcTime> since_;      ///< from which numbers count
+  std::optional<double> first_;       ///< of those
+  std::optional<UtcTime> base_;       ///< the first time
   std::optional<UtcTime> last_;       ///< of a clock without a day
   std::int64_t longest_step_ns_ = 0;  ///< that it has made
   std::int64_t midnights_ = 0;        ///< that it has passed
 };
 
 inline constexpr const char* kOneTime = "two times fall on one, as a number has no more than 16 digits";
+
+/// "ms since 1970-01-01" for a number of `unit` that is then a time between 2000 and 2055, and "" for any other: no test
+/// lasts that long.
+[[nodiscard]] std::string since_1970(const std::string& unit, double number);
 
 /// Median distance of increasing times, s; 1 where there is one time alone.
 [[nodiscard]] double usual_step(const std::vector<double>& times_s);

@@ -219,6 +219,7 @@ class LogReader {
     test.first_row = first_row_;
     test.start_time = time_format_.utc(values_[time_].front());
     test.clock = time_format_.clock(values_[time_].front());
+    note_count_since_1970();
     if (time_format_.is_absolute())
       if (Status shifted = shift_times(values_[time_], -values_[time_].front()); !shifted) return shifted;
     std::vector<Column> columns;
@@ -229,6 +230,13 @@ class LogReader {
     repeated_ = {};
     shift_s_ = 0.0;
     return {};
+  }
+
+  void note_count_since_1970() {
+    const bool counts = !time_format_.is_absolute() && !since_1970("s", values_[time_].front()).empty();
+    if (!counts || !out_.tests.empty()) return;
+    mapped_.warnings.push_back("the time counts from 1970, as it seems: in the map, `unit: " + mapped_.time_unit +
+                               " since 1970-01-01` begins the test at 0 s and dates it");
   }
 
   void name_contents() {

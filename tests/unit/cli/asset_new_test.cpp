@@ -403,7 +403,7 @@ TEST_F(AssetNew, MillisecondsSince1970AreSeen) {
             kOk);
   const Result<AssetConfig> asset = load_asset(path("a.yaml"));
   ASSERT_TRUE(asset) << asset.error().describe();
-  EXPECT_EQ(asset->channel_map.columns.at("time").unit, "ms");
+  EXPECT_EQ(asset->channel_map.columns.at("time").unit, "ms since 1970-01-01");
 }
 
 // What the log does not give is said where one looks first, on the screen, and with columns that may be it.
@@ -597,7 +597,7 @@ TEST_F(StrangeLogs, AColumnThatOnlyRisesIsNamedAsTheTime) {
   EXPECT_THAT(
       read_back("ts;motor_voltage [V];position [mm]\n1772614800000;1.5;60\n1772614800010;2;59\n1772614800020;4;57\n")
           .told,
-      ::testing::HasSubstr("column \"ts\": taken for ms\n"));
+      ::testing::HasSubstr("column \"ts\": taken for ms since 1970-01-01\n"));
 }
 
 TEST_F(StrangeLogs, EveryDoubtOfAColumnIsTold) {

@@ -15,6 +15,7 @@ using ::testing::AllOf;
 using ::testing::DoubleEq;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 class LoggerLayouts : public ScratchFolder {
@@ -180,6 +181,34 @@ TEST_F(LoggerLayouts, DaysOfMatlabAndTimesSinceADate) {
   EXPECT_EQ(format_utc(*since.start_time), "2031-04-12T03:00:00Z");
   EXPECT_THAT(error_of("t;U;x\n0;1;60\n1;1;60\n", map_of("t", "seconds since yesterday")),
               HasSubstr("must read as 'days since 2031-04-12'"));
+}
+
+// A count since long ago has few digits left: the test begins at 0 s, exactly, and is dated.
+TEST_F(LoggerLayouts, MillisecondsSince1970DateATest) {
+  const std::string text = "t;U [mV];x [mm]\n1930003200125;1;60\n1930003200625;2;59\n1930003201125;4;57\n";
+  const Recording dated = read(text, map_of("t", "ms since 1970-01-01"));
+  EXPECT_THAT(dated.samples.time_s, ElementsAre(0.0, 0.5, 1.0));
+  EXPECT_EQ(format_utc(*dated.start_time), "2031-02-28T00:00:00.125Z");
+  EXPECT_THAT(dated.warnings, IsEmpty());
+  const Recording counted = read(text, map_of("t", "ms"));
+  EXPECT_FALSE(counted.start_time);
+  EXPECT_THAT(counted.warnings, ElementsAre(HasSubstr("`unit: ms since 1970-01-01` begins the test at 0 s")));
+  EXPECT_THAT(error_of("t;U;x\n1e300;1;60\n", map_of("t", "s since 1970-01-01")), HasSubstr("the years 1700 to 2250"));
+}
+
+TEST(TimeFormat, WhatCountsSince1970IsOfOurTime) {
+  EXPECT_EQ(since_1970("s", 1.93e9), "s since 1970-01-01");
+  EXPECT_EQ(since_1970("us", 1.93e15), "us since 1970-01-01");
+  EXPECT_EQ(since_1970("ms", 1.93e9), "") << "of 22 days";
+  EXPECT_EQ(since_1970("s", 4.0e9), "") << "since 1904, as LabVIEW counts";
+  EXPECT_EQ(since_1970("iso8601", 1.93e9), "");
+}
+
+// As loggers of programmable controllers and simulators write switches.
+TEST_F(LoggerLayouts, TrueAndFalseAreNumbers) {
+  const Recording recording = read("t;U;x [mm]\n0;FALSE;60\n0,5;True;59\n1;true;57\n", map_of("t", "s"));
+  EXPECT_THAT(recording.samples.find("motor_voltage")->values, ElementsAre(0.0, 1.0, 1.0));
+  EXPECT_THAT(error_of("t;U;x\n0;falsch;60\n", map_of("t", "s")), HasSubstr("must be a number"));
 }
 
 // "Unicode text" of Windows' tools.

@@ -1,8 +1,11 @@
 // `sealwatch` as scripts use it: machine-readable results, exit status, errors that name file and place.
 #include <gmock/gmock.h>
 
+#include <fcntl.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
@@ -11,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
@@ -18,7 +22,9 @@
 #include <thread>
 
 #include "sealwatch/core/time.hpp"
+#include "services/common/message/json.hpp"
 #include "tests/integration/six_services.hpp"
+#include "tests/integration/two_seconds.hpp"
 #include "tests/unit/fmi/fmu_builder.hpp"
 
 namespace sealwatch::testing {
@@ -654,10 +660,12 @@ struct Told {
 
 class EndAtSigterm : public Commands {
  protected:
+  static constexpr int kBadUsage = 2;
+
   /// Ended within two seconds, and all that it had started with it.
   void tell(const Told& told) {
     std::vector<std::string> arguments = told.words;
-    arguments.insert(arguments.begin(), "sealwatch");
+    if (!told.words[0].starts_with('/')) arguments.insert(arguments.begin(), "sealwatch");
     SCOPED_TRACE(told.words[0] + " " + (told.words.size() > 1 ? told.words[1] : ""));
     const pid_t command = start(arguments, folder_ / "endless.log");
     std::this_thread::sleep_for(std::chrono::milliseconds(told.after_ms));
@@ -665,27 +673,27 @@ class EndAtSigterm : public Commands {
     if (waitpid(command, &status, WNOHANG) == command) {
       std::ifstream log(folder_ / "endless.log");
       EXPECT_FALSE(told.for_ever) << "it was done: " << log.rdbuf();
+      EXPECT_FALSE(WIFEXITED(status) && WEXITSTATUS(status) == kBadUsage) << "it did not begin: " << log.rdbuf();
       return;
     }
     const std::set<pid_t> children = children_of(command);
     const auto begin = std::chrono::steady_clock::now();
     kill(command, SIGTERM);
-    // As long as a process that sleeps for two seconds, on this machine, now.
-    const pid_t sleeper = start({"/bin/sleep", "2"}, folder_ / "sleeper.log");
-    const auto all_ended = [&] {
-      return waitpid(command, &status, WNOHANG) != 0 && std::ranges::none_of(children, runs);
-    };
-    bool ended = all_ended();
-    while (!ended && waitpid(sleeper, nullptr, WNOHANG) == 0) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-      ended = all_ended();
-    }
+    const bool ended = happens_within_two_seconds(
+        [&] { return waitpid(command, &status, WNOHANG) != 0 && std::ranges::none_of(children, runs); });
     EXPECT_TRUE(ended) << "it goes on after two seconds";
     const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - begin);
     std::cout << told.words[0] << ": " << took.count() << " ms, " << children.size() << " children\n";
-    if (!ended) kill(command, SIGKILL);
-    kill(sleeper, SIGKILL);
-    waitpid(sleeper, nullptr, 0);
+    if (!ended) kill(command, SIGKILL), waitpid(command, nullptr, 0);
+  }
+  [[nodiscard]] static json a_block() {
+    RawSamples block;
+    block.asset_id = "XT03-MV2";
+    block.header.message_id = "raw_samples/a trial/0";
+    block.recording_id = "a trial";
+    block.source_id = "plc";
+    block.samples.time_s = {0.0, 0.1};
+    return json::parse(to_json(Message(block)));
   }
   /// As many rows as a test may have, `times` times over.
   [[nodiscard]] std::string large(int times) const {
@@ -716,6 +724,14 @@ TEST_F(EndAtSigterm, EveryCommandThatComputesOrWaits) {
     words.insert(words.end(), by.begin(), by.end());
     return words;
   };
+  // Lines that may still come, and a block that no service confirms.
+  const auto lines = folder_ / "lines";
+  ASSERT_EQ(mkfifo(lines.c_str(), 0600), 0);
+  const std::shared_ptr<void> writer(nullptr, [held = open(lines.c_str(), O_RDWR | O_CLOEXEC)](void*) { close(held); });
+  const auto publish = [](const std::filesystem::path& input) -> Told {
+    return {{"/bin/sh", "-c", "exec \"$0\" publish --config \"$1\" <\"$2\"", program("sealwatch"), config(),
+             input.string()}};
+  };
   const std::vector<Told> all = {
       {{"verify", "rul", "--asset", asset(), "--lives", "100000", "--out", out + "1"}},
       {{"verify", "mismatch", "--sets", "1000", "--out", out + "2"}},
@@ -736,7 +752,8 @@ TEST_F(EndAtSigterm, EveryCommandThatComputesOrWaits) {
       {{"backup", "--state", out + "9", "--to", out + "10"}, 20, false},
       {{"watch", "--config", config()}},
       {{"status", "--config", config(), "--seconds", "60"}},
-      {{"publish", "--config", config(), "--writer", "plc"}, 1500, false},
+      publish(lines),
+      publish(write("block.jsonl", json{{"topic", "raw_samples"}, {"message", a_block()}}.dump() + "\n")),
       {said_by({"retract", "XT03-MV2", "--since", "2031-01-01", "--reason", "a trial"}), 500, false},
       {said_by({"replaced", "XT03-MV2", "--at", "2018-06-10"}), 500, false},
       {said_by({"acknowledge", "XT03-MV2", "advisory/1", "--remark", "a trial"}), 500, false},

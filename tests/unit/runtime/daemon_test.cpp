@@ -23,6 +23,7 @@
 #include "services/common/runtime/log.hpp"
 #include "services/common/runtime/service_manager.hpp"
 #include "services/common/store/journal.hpp"
+#include "tests/integration/two_seconds.hpp"
 #include "tests/unit/runtime/harness.hpp"
 #include "tests/unit/runtime/yaml_place.hpp"
 
@@ -161,17 +162,12 @@ TEST_F(DaemonTest, EndsAtSigtermWhateverItComputes) {
     if (daemon == 0) _exit(run(usual()));
     EXPECT_TRUE(manager.heard("READY=1"));
     std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-    const auto begin = std::chrono::steady_clock::now();
     ::kill(daemon, SIGTERM);
     int status = -1;
-    pid_t ended = 0;
-    while (ended == 0 && std::chrono::steady_clock::now() - begin < std::chrono::seconds(20)) {
-      ended = ::waitpid(daemon, &status, WNOHANG);
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    EXPECT_EQ(ended, daemon) << "runs on, later " << later;
+    const bool ended = happens_within_two_seconds([&] { return ::waitpid(daemon, &status, WNOHANG) == daemon; });
+    EXPECT_TRUE(ended) << "runs on, later " << later;
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
-    if (ended != daemon) ::kill(daemon, SIGKILL), ::waitpid(daemon, &status, 0);
+    if (!ended) ::kill(daemon, SIGKILL), ::waitpid(daemon, &status, 0);
   }
 }
 

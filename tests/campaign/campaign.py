@@ -456,7 +456,24 @@ class Campaign:
                 raise Failed(f"{service}, {name}: {difference or 'identical'}, told: {told}")
             if lost and not any("samples" in one or "damaged" in one or "in the place" in one for one in told):
                 raise Failed(f"{service}, {name}: samples are lost, told: {told}")
-        return f"{len(cases)} damages: every service starts, each told as an alarm; results identical, or samples named as lost"
+        self.check_all_removed()
+        return (f"{len(cases)} damages, and all journals removed at once: every service starts, each told as an alarm; results"
+                " identical, or samples named as lost")
+
+    def check_all_removed(self):
+        """With their logs and locks: no neighbour knows of a journal before its own, and each service tells of its own."""
+        state = self.folder / "all-removed"
+        shutil.copytree(self.closed, state)
+        for file in state.glob("*.db*"):
+            file.unlink()
+        with World(self.binaries, self.folder, state) as world:
+            world.start_all()
+            world.wait_until_running()
+            told = {alarm["subject"]: alarm["text"] for alarm in json.loads(world.run("status", "--json", "--seconds", "1.5").stdout)["alarms"]
+                    if alarm["kind"] == "set_aside"}
+        silent = [service for service in SERVICES if "removed" not in told.get(f"journal/{service.replace('-', '_')}", "")]
+        if silent:
+            raise Failed(f"all journals removed: {silent} start empty and do not tell; told: {told}")
 
     def full_disk(self):
         with World(self.binaries, self.folder) as world:

@@ -138,6 +138,7 @@ Result<std::string> restore_journal(const std::string& copy, const std::string& 
   forget_damage(file);
   if (const auto placed = JournalReader::open(connection, service); placed)
     lock->remember({.writer_id = placed->writer_id()});
+  give_to_owner_of(folder, JournalLock::mark_file_of(file));
   return aside;
 }
 

@@ -125,7 +125,9 @@ void Journal::Database::compare_with_last() {
   if (!lock || !lock->last()) return;
   const long long ended = lock->last()->conclusions;
   if (is_made)
-    tell_of_journal("the journal, or its write-ahead log, was removed; it is made again from the neighbours' messages");
+    tell_of_journal(
+        "the journal, or its write-ahead log, was removed; it is made again from the neighbours' messages, as far as "
+        "they have theirs: restore a backup for the rest");
   else if (last_ordinal < ended)
     tell_of_journal("the journal ends at conclusion " + std::to_string(last_ordinal) + " and went to " +
                     std::to_string(ended) +

@@ -10,6 +10,8 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace sealwatch {
@@ -44,7 +46,32 @@ std::optional<JournalMark> mark_in(std::string_view text) {
   return is_whole && !found.writer_id.empty() ? std::optional(found) : std::nullopt;
 }
 
+std::string read_from(int descriptor) {
+  std::array<char, 600> content{};
+  const ssize_t size = ::pread(descriptor, content.data(), content.size(), 0);
+  return {content.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0))};
+}
+
+std::string content_of(const std::string& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return {};
+  std::string text = read_from(descriptor);
+  ::close(descriptor);
+  return text;
+}
+
+void write_to(int descriptor, const std::string& text) {
+  if (::pwrite(descriptor, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()))
+    (void)!::ftruncate(descriptor, static_cast<off_t>(text.size()));
+}
+
 }  // namespace
+
+std::string JournalLock::mark_file_of(const std::string& journal_file) {
+  const std::filesystem::path file(journal_file);
+  return file.extension() == ".mark" ? journal_file + ".mark"
+                                     : std::filesystem::path(file).replace_extension("mark").string();
+}
 
 Result<JournalLock> JournalLock::take(const std::string& journal_file) {
   const std::string file = journal_file + ".lock";
@@ -55,18 +82,17 @@ Result<JournalLock> JournalLock::take(const std::string& journal_file) {
                       .value = {},
                       .rule = "unable to open its lock: " + std::string(std::strerror(errno)),
                       .advice = "check that the directory exists and that this user may write to it"});
-  JournalLock lock(file, descriptor);
+  JournalLock lock(journal_file, descriptor);
   const bool is_taken = ::flock(descriptor, LOCK_EX | LOCK_NB) != 0;
-  std::array<char, 600> content{};
-  const ssize_t size = ::pread(descriptor, content.data(), content.size(), 0);
-  const std::string_view text(content.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+  const std::string text = read_from(descriptor);
   if (is_taken)
     return fail(Error{.file = journal_file,
                       .place = "journal",
-                      .value = std::string(text.substr(0, text.find('\n'))),
+                      .value = text.substr(0, text.find('\n')),
                       .rule = "another process works with this journal",
                       .advice = kAdvice});
   lock.last_ = mark_in(text);
+  if (!lock.last_) lock.last_ = mark_in(content_of(lock.mark_file_));
   lock.write();
   return lock;
 }
@@ -84,8 +110,12 @@ void JournalLock::write() const {
     text.append(kConclusions).append(std::to_string(last_->conclusions));
     text.append(kAt).append(std::to_string(last_->at_ns)).append("\n");
   }
-  if (::pwrite(descriptor_, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()))
-    (void)!::ftruncate(descriptor_, static_cast<off_t>(text.size()));
+  write_to(descriptor_, text);
+  if (!last_ || !holds()) return;
+  const int mark = ::open(mark_file_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
+  if (mark < 0) return;
+  write_to(mark, text);
+  ::close(mark);
 }
 
 JournalLock::~JournalLock() {

@@ -19,13 +19,15 @@ struct JournalMark {
 };
 
 /// On "FILE.lock" (flock, which NFS carries to other machines). The kernel lets go of it however the process ends. It
-/// remembers the journal that was used last: another in its place, an older copy of it, or none, is noticed.
+/// remembers the journal that was used last: another in its place, an older copy of it, or none, is noticed. So does a
+/// file that has not the journal's name in its own: who removes "FILE*" of all services leaves no neighbour that knows.
 class JournalLock {
  public:
   [[nodiscard]] static Result<JournalLock> take(const std::string& journal_file);
   ~JournalLock();
   JournalLock(JournalLock&& other) noexcept
       : file_(std::move(other.file_)),
+        mark_file_(std::move(other.mark_file_)),
         descriptor_(std::exchange(other.descriptor_, -1)),
         last_(std::move(other.last_)) {}
   JournalLock& operator=(JournalLock&&) = delete;
@@ -35,11 +37,15 @@ class JournalLock {
   /// The journal that was used here last, as far as that is known.
   [[nodiscard]] const std::optional<JournalMark>& last() const { return last_; }
   void remember(const JournalMark& mark);
+  /// "state/SERVICE.mark" of "state/SERVICE.db".
+  [[nodiscard]] static std::string mark_file_of(const std::string& journal_file);
 
  private:
   void write() const;
-  JournalLock(std::string file, int descriptor) : file_(std::move(file)), descriptor_(descriptor) {}
+  JournalLock(const std::string& journal_file, int descriptor)
+      : file_(journal_file + ".lock"), mark_file_(mark_file_of(journal_file)), descriptor_(descriptor) {}
   std::string file_;
+  std::string mark_file_;
   int descriptor_ = -1;
   std::optional<JournalMark> last_;
 };

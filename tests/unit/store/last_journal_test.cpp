@@ -70,6 +70,19 @@ TEST_F(LastJournal, ThatWasRemovedIsTold) {
   EXPECT_THAT(told(), ElementsAre(HasSubstr("removed")));
 }
 
+/// As by "rm state/*.db*", after which no neighbour knows of a journal before its own either.
+TEST_F(LastJournal, ThatWasRemovedWithItsLockIsTold) {
+  for (const char* end : {"", "-wal", "-shm", ".lock"}) fs::remove(file() + end);
+  EXPECT_THAT(told(), ElementsAre(AllOf(HasSubstr("journal/state_detection"), HasSubstr("removed"))));
+  EXPECT_THAT(outputs(), IsEmpty());
+}
+
+/// Who removes the mark, too, begins anew.
+TEST_F(LastJournal, OfWhichNothingIsLeftIsNotMissed) {
+  for (const auto& entry : fs::directory_iterator(place_.directory())) fs::remove(entry);
+  EXPECT_THAT(told(), IsEmpty());
+}
+
 /// As after a power cut, all of a young journal is in its log.
 TEST_F(LastJournal, WhoseLogWasRemovedIsTold) {
   fs::remove(file());

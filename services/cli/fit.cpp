@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "sealwatch/core/text.hpp"
@@ -16,6 +15,7 @@
 #include "services/cli/recordings.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
+#include "services/common/estimation/model_validation.hpp"
 #include "services/common/runtime/in_process_pipeline.hpp"
 #include "services/common/runtime/large_blocks.hpp"
 #include "services/data_acquisition/data_acquisition.hpp"
@@ -47,10 +47,7 @@ FitResult fit_whole(const AssetConfig& asset, const std::vector<Recording>& reco
   std::vector<TimeSeries> samples;
   samples.reserve(recordings.size());
   for (const Recording& recording : recordings) samples.push_back(recording.samples);
-  // A seal's leakage means nothing when the model does not come near the recording, and the search is given up. Of a
-  // plant without a seal the question may be just how far its naive model is off.
-  ActuatorFitOptions search;
-  if (!plant_or_default(asset.model).condition) search.hopeless_rms = std::numeric_limits<double>::infinity();
+  ActuatorFitOptions search = search_of(asset);
   Deadline deadline;
   deadline.set_in(time_limit_s);
   search.deadline = &deadline;

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <utility>
 
-#include "sealwatch/estimation/actuator_fit.hpp"
 #include "sealwatch/estimation/residual_statistics.hpp"
 #include "sealwatch/model/driving_channels.hpp"
+#include "sealwatch/model/plant_description.hpp"
 #include "services/common/estimation/channel_noise.hpp"
 #include "services/common/model/model_simulator.hpp"
 #include "services/common/text/format.hpp"
@@ -96,7 +97,7 @@ Result<std::vector<TimeSeries>> fit_and_simulate(const AssetConfig& asset, const
                                                  ModelValidation& validation) {
   std::vector<TimeSeries> samples;
   for (const Recording& recording : recordings) samples.push_back(recording.samples);
-  JointFit joint = fit_actuator(asset, samples);
+  JointFit joint = fit_actuator(asset, samples, search_of(asset));
   validation.fitted = true;
   validation.parameters = joint.report.parameters;
   validation.termination = joint.report.termination;
@@ -168,6 +169,12 @@ void judge(ModelValidation& validation) {
 }
 
 }  // namespace
+
+ActuatorFitOptions search_of(const AssetConfig& asset) {
+  ActuatorFitOptions search;
+  if (!plant_or_default(asset.model).condition) search.hopeless_rms = std::numeric_limits<double>::infinity();
+  return search;
+}
 
 Result<ModelValidation> validate_model(const AssetConfig& asset, const std::vector<Recording>& recordings,
                                        const std::vector<std::string>& names, bool fit) {

@@ -13,6 +13,7 @@
 #include "sealwatch/config/asset.hpp"
 #include "sealwatch/core/recording.hpp"
 #include "sealwatch/core/result.hpp"
+#include "sealwatch/estimation/actuator_fit.hpp"
 #include "sealwatch/estimation/fit_report.hpp"
 
 namespace sealwatch {
@@ -44,6 +45,11 @@ struct ModelValidation {
   /// are coloured or depend on the past input (1 % over all channels and recordings together).
   std::vector<std::string> remarks;
 };
+
+/// How a fit's search ends: a seal's leakage means nothing where the model does not come near the recording, and the
+/// search is given up. Of a plant without a seal the question may be just how far its naive model is off; and one that
+/// jumps is far off until all its jumps are met.
+[[nodiscard]] ActuatorFitOptions search_of(const AssetConfig& asset);
 
 /// Estimates the operating point of each recording (load and initial state) and nothing else; with `fit` the asset's
 /// free parameters first, from all recordings together. An Error when a recording cannot be simulated.

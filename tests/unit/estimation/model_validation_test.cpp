@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "sealwatch/model/plant_description.hpp"
 #include "services/virtual_bench/simulate_test.hpp"
 #include "tests/unit/verification/actuator.hpp"
 
@@ -54,6 +55,15 @@ TEST(ModelValidation, SeesAnotherParameterAndFitsIt) {
                                     [](const EstimatedParameter& parameter) { return parameter.name == "R_CL"; });
   ASSERT_NE(leakage, fitted->parameters.end());
   EXPECT_NEAR(leakage->value, 0.7e13, 5.0 * leakage->std_error);
+}
+
+// As of one that jumps: far off, until all its jumps are met.
+TEST(ModelValidation, OfAPlantWithoutASealTheSearchIsNotGivenUp) {
+  AssetConfig asset = verification::testing::actuator();
+  EXPECT_LT(search_of(asset).hopeless_rms, 100.0);
+  asset.model = "emps";
+  ASSERT_TRUE(find_plant(asset.model));
+  EXPECT_GT(search_of(asset).hopeless_rms, 1e300);
 }
 
 TEST(ModelValidation, SaysOfEachChannelOnceThatItMisfitsTheWorstFirst) {

@@ -104,6 +104,7 @@ nlohmann::ordered_json plant_as_json(const std::string& file, const Checked<Read
     return result;
   }
   const PlantDescription& plant = read->built.plant.description;
+  result["warnings"] = read->built.remarks;
   result["name"] = plant.name;
   for (const ChannelDescription& channel : plant.channels)
     result["channels"].push_back({{"name", channel.name}, {"unit", channel.unit}, {"input", channel.input}});
@@ -141,6 +142,9 @@ int run_plant_check(const PlantCheckOptions& options) {
         plant_as_json(options.file, read).dump(1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
   else if (read)
     print_plant(options.file, *read);
+  for (std::size_t k = 0; read && !options.json && k < read->built.remarks.size(); ++k)
+    std::fprintf(stderr, "sealwatch: warning: %s: %s\n", options.file.c_str(),
+                 visible(read->built.remarks[k], false).c_str());
   if (!read && !options.json) {
     for (const Error& error : read.error()) std::fprintf(stderr, "%s\n", visible(error.describe()).c_str());
     std::fprintf(stderr, "%zu fault%s found\n", read.error().size(), read.error().size() == 1 ? "" : "s");

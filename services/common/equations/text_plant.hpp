@@ -107,7 +107,8 @@ using Faults = std::function<void(const std::string& key, const Error& error)>;
 
 struct BuiltPlant {
   RuntimePlant plant;
-  std::vector<Law> laws;  ///< of its own
+  std::vector<Law> laws;                  ///< of its own
+  std::vector<std::string> remarks = {};  ///< of what is no fault, and may be one
 };
 
 /// Nothing where something is wrong, all of which went to `faults`.

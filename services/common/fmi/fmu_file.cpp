@@ -91,6 +91,7 @@ Result<std::shared_ptr<const FmuFile>> FmuFile::open(const std::string& file, co
               .value = wants_exchange ? "me" : "cs",
               .rule = std::string("it has no interface for ") + (wants_exchange ? "Model Exchange" : "Co-Simulation"),
               .advice = "leave `interface` out, and the one that it has is taken"});
+  description->offers_exchange = description->model_exchange.has_value();
   if (wants_steps) description->model_exchange.reset();
   std::shared_ptr<FmuFile> fmu(new FmuFile(std::move(*unpacked), std::move(*description), settings));
   if (const Status sound = fmu->take_settings(); !sound) return fail(sound.error());

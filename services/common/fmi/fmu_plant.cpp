@@ -48,6 +48,7 @@ class Builder {
     if (!built || !sound_) return std::nullopt;
     if (const Status honest = check_derivatives(block_); !honest)
       return complain("fmu.file", honest.error()), std::nullopt;
+    if (!undefined_units_.empty()) built->remarks.push_back(undefined_units_ + ": " + kUndefinedUnits);
     strip(built->plant);
     return built;
   }
@@ -157,6 +158,7 @@ class Builder {
     for (const FmuVariable& variable : section_.variables)
       choose("fmu.variables." + variable.name, variable.variable, outputs, selection.outputs);
     if (!sound_) return;
+    note_units(selection);
     const auto setup = block_.file->setup(selection);
     if (!setup) return complain("fmu", setup.error());
     block_.setup = *setup;
@@ -171,6 +173,18 @@ class Builder {
                                             description_->variables[outputs[k].variable], section_.variables[k].unit);
     units_of(inputs, input_units_, block_.inputs);
     units_of(parameters, parameter_units_, block_.parameters);
+  }
+
+  void note_units(const Selection& selection) {
+    std::vector<std::size_t> used;
+    for (const auto* list : {&selection.inputs, &selection.parameters, &selection.outputs})
+      used.insert(used.end(), list->begin(), list->end());
+    if (!block_.file->co_simulation())
+      for (const Element& state : description_->states)
+        if (state.element == 0) used.push_back(state.variable);
+    std::ranges::sort(used);
+    used.erase(std::ranges::unique(used).begin(), used.end());
+    undefined_units_ = undefined_units(*description_, used);
   }
 
   // An array is set whole: what is not given must have a start.
@@ -338,6 +352,7 @@ class Builder {
   TextPlant frame_;
   std::vector<std::string> input_units_, parameter_units_;
   std::vector<bool> starts_by_fmu_;
+  std::string undefined_units_;
   std::map<std::string, std::string> keys_;  ///< of the frame's rows, to those of the file
 };
 

@@ -56,11 +56,13 @@ class PlantFileWriter {
       state_rows();
       site_rows();
     } else {
-      out_
-          << "\n# This FMU is for Co-Simulation alone: it integrates by itself and keeps its states, so that no law "
-             "can be\n"
-             "# added to its derivatives. fit, validate and explain work with its inputs, outputs, parameters and\n"
-             "# sensors; explain asks no physics of it. Exported for Model Exchange it can be asked for physics too.\n";
+      out_ << "\n# Taken for Co-Simulation it integrates by itself and keeps its states, so that no law can be added "
+              "to its\n"
+              "# derivatives. fit, validate and explain work with its inputs, outputs, parameters and sensors; explain "
+              "asks\n"
+              "# no physics of it. "
+           << (fmu_.offers_exchange ? "Imported with --interface me" : "Exported for Model Exchange")
+           << " it can be asked for physics too.\n";
     }
     return out_.str();
   }
@@ -279,6 +281,14 @@ Result<std::string> plant_file_of(const FmuFile& file, const std::string& path, 
   Result<ImportStart> start = start_unit(file, options, rows);
   if (!start) return fail(start.error());
   name_rows(file.description(), rows);
+  std::vector<std::size_t> variables;
+  for (const auto* group : {&rows.inputs, &rows.parameters, &rows.states, &rows.outputs})
+    for (const ImportRow& row : *group)
+      if (row.element.element == 0) variables.push_back(row.element.variable);
+  std::ranges::sort(variables);
+  variables.erase(std::ranges::unique(variables).begin(), variables.end());
+  if (const std::string undefined = undefined_units(file.description(), variables); !undefined.empty())
+    options.tell(undefined + ": " + kUndefinedUnits);
   return PlantFileWriter(file, path, std::move(rows), std::move(*start)).write();
 }
 

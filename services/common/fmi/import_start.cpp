@@ -41,7 +41,7 @@ class UnitStart {
     };
     const auto before = Clock::now();
     auto beginning = begin();
-    if (!beginning) return fail(beginning.error());
+    if (!beginning) return leave_out_refused(selection) ? run() : fail(beginning.error());
     constexpr double kSlower = 3.0;  // than the first start
     trial_s_ = std::max(trial_s_, kSlower * std::chrono::duration<double>(Clock::now() - before).count());
     out_.beginning = std::move(*beginning);
@@ -72,6 +72,53 @@ class UnitStart {
         (fmu_.variables[row.element.variable].start.empty() ? selection.outputs : selection.parameters)
             .push_back(row.element.variable);
     return selection;
+  }
+
+  // Some tools export parameters whose values their own binary refuses; it may not say which, or end. Whether there are
+  // any, so that what is left starts.
+  bool leave_out_refused(const Selection& selection) {
+    if (selection.parameters.empty() || !starts_with(selection.inputs, {})) return false;
+    trials_end_ =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options_.trials_s));
+    std::set<std::size_t> refused;
+    add_refused(selection.inputs, selection.parameters, refused);
+    if (refused.empty()) return false;
+    std::string names;
+    for (const std::size_t variable : refused)
+      if (names.size() < 200) text::add_to_list(names, fmu_.variables[variable].name);
+    options_.tell("it does not start with values for " + text::count_of(refused.size(), "parameter") +
+                  ", which it declares: " + names + (names.size() < 200 ? "" : ", ...") +
+                  "; left out, so that it keeps its own");
+    std::erase_if(rows_.parameters, [&](const ImportRow& row) { return refused.contains(row.element.variable); });
+    return true;
+  }
+
+  // Halves of a list that does not start; when time is up, all of it.
+  void add_refused(const std::vector<std::size_t>& inputs, std::span<const std::size_t> parameters,
+                   std::set<std::size_t>& refused) {
+    const bool late = Clock::now() > trials_end_;
+    if (!late && starts_with(inputs, {parameters.begin(), parameters.end()})) return;
+    if (late || parameters.size() == 1) return refused.insert(parameters.begin(), parameters.end()), void();
+    const std::size_t half = parameters.size() / 2;
+    add_refused(inputs, parameters.first(half), refused);
+    add_refused(inputs, parameters.subspan(half), refused);
+  }
+
+  [[nodiscard]] bool starts_with(std::vector<std::size_t> inputs, std::vector<std::size_t> parameters) const {
+    Selection selection;
+    selection.inputs = std::move(inputs), selection.parameters = std::move(parameters);
+    const auto setup = file_.setup(selection);
+    if (!setup) return false;
+    const auto process = FmuProcess::start(file_.name(), *setup, 1, {.start_s = trial_s_, .call_s = trial_s_});
+    const std::vector<double> input_values = starts_of(selection.inputs), values = starts_of(selection.parameters);
+    const std::vector<double> steps(rows_.states.size(), 1e-7), input_steps(input_values.size(), 1e-7);
+    return process && (*process)
+                          ->begin({.start_time_s = fmu_.start_time_s.value_or(0.0),
+                                   .state_steps = steps,
+                                   .input_steps = input_steps,
+                                   .inputs = input_values,
+                                   .parameters = values})
+                          .has_value();
   }
 
   [[nodiscard]] std::vector<double> starts_of(const std::vector<std::size_t>& variables) const {
@@ -245,7 +292,8 @@ class UnitStart {
   const ModelDescription& fmu_;
   const ImportOptions& options_;
   ImportRows& rows_;
-  double trial_s_;            ///< of one start that is only tried
+  double trial_s_;  ///< of one start that is only tried
+  Clock::time_point trials_end_ = {};
   bool others_start_ = true;  ///< it starts with other parameters and inputs, too
   ImportStart out_;
 };

@@ -101,6 +101,7 @@ struct ModelDescription {
   std::string description;
   std::optional<Interface> model_exchange;
   std::optional<Interface> co_simulation;
+  bool offers_exchange = false;  ///< though it is taken for Co-Simulation
   bool scheduled_execution = false;
   std::vector<Unit> units;
   std::vector<Variable> variables;
@@ -129,6 +130,15 @@ using Settings = std::map<std::string, std::string>;
 /// other sizes than the description's; what was their start is then unknown.
 [[nodiscard]] Result<ModelDescription> read_model_description(const std::string& file, std::string_view text,
                                                               const Settings& settings = {});
+
+/// Of these variables those that count in a unit that the description does not define, nor its name as one of SI:
+/// "bar (p_1, p_2), min (tau)"; "" where there are none. Their numbers are taken as they are.
+[[nodiscard]] std::string undefined_units(const ModelDescription& description,
+                                          const std::vector<std::size_t>& variables);
+inline constexpr const char* kUndefinedUnits =
+    "the FMU does not define these units, so that its numbers are taken as they are; where those are no SI, convert "
+    "them "
+    "in the plant file's expressions, as in 1e5[Pa]*p";
 
 /// SI unit by its usual name ("N m"), or put together ("kg m2/s3"); "1" where the unit says nothing.
 [[nodiscard]] std::string si_name(const Unit& unit);

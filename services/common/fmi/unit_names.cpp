@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
 #include <utility>
 
+#include "services/common/equations/dimension.hpp"
 #include "services/common/fmi/model_description.hpp"
+#include "services/common/text/words.hpp"
 #include "services/common/units/unit_conversion.hpp"
 
 namespace sealwatch::fmi {
@@ -60,6 +63,27 @@ const char* angular_name(const Unit& unit) {
 }
 
 }  // namespace
+
+std::string undefined_units(const ModelDescription& description, const std::vector<std::size_t>& variables) {
+  constexpr std::size_t kMostNamed = 4, kMostUnits = 10;
+  std::map<std::string, std::vector<std::string>> uses;
+  for (const std::size_t k : variables) {
+    const Variable& variable = description.variables[k];
+    if (variable.unit.empty() || variable.unit == "-" || description.si_unit_of(variable)) continue;
+    const Result<equations::Dimension> own = equations::find_dimension(variable.unit);
+    if (!own || own->scale != 1.0) uses[variable.unit].push_back(variable.name);
+  }
+  std::string list;
+  std::size_t units = 0;
+  for (auto& [unit, names] : uses) {
+    if (++units > kMostUnits) break;
+    const std::size_t more = names.size() - std::min(names.size(), kMostNamed);
+    names.resize(names.size() - more);
+    if (more > 0) names.push_back(std::to_string(more) + " more");
+    text::add_to_list(list, unit + " (" + text::joined(names) + ")");
+  }
+  return list + (uses.size() > kMostUnits ? " and " + std::to_string(uses.size() - kMostUnits) + " more" : "");
+}
 
 std::string si_name(const Unit& unit) {
   if (!unit.has_base) return "1";

@@ -203,5 +203,60 @@ TEST(ImportFmu, OneThatDoesNotStartIsRefusedByName) {
   EXPECT_THAT(imported(folder, spring_return("fmu_spring_licence2")), HasSubstr("licence"));
 }
 
+std::string told_of(const TestFolder& folder, const TestUnit& unit, std::string& text, Choice choice = {}) {
+  std::string told;
+  const auto file = FmuFile::open(folder.build(unit), {}, choice);
+  if (!file) return file.error().describe();
+  const auto written =
+      plant_file_of(**file, "model.fmu", {.tell = [&](const std::string& words) { told += words + "\n"; }});
+  text = written ? *written : written.error().describe();
+  return told;
+}
+
+/// Tools export parameters that their own binaries do not let be set; of many it is not said which.
+TEST(ImportFmu, ParametersThatTheBinaryRefusesAreLeftOut) {
+  const TestFolder folder;
+  for (const char* binary : {"fmu_mixed2", "fmu_mixed3"}) {
+    TestUnit unit = mixed(binary);
+    const bool fmi3 = std::string(binary).ends_with('3');
+    const auto as_parameter = [&](const std::string& name) {
+      const std::size_t at = unit.variables.find("name=\"" + name + "\"");
+      const std::size_t output = unit.variables.find("causality=\"output\"", at);
+      unit.variables.replace(output, 18, "causality=\"parameter\"");
+      const std::size_t continuous = unit.variables.find("variability=\"continuous\"", at);
+      unit.variables.replace(continuous, 24, "variability=\"fixed\"");
+      const std::size_t start =
+          fmi3 ? unit.variables.find("variability", continuous) : unit.variables.find("<Real", at) + 5;
+      unit.variables.insert(start, " start=\"3\" ");
+    };
+    as_parameter("now"), as_parameter("began");
+    std::string text;
+    EXPECT_THAT(told_of(folder, unit, text),
+                AllOf(HasSubstr("it does not start with values for 2 parameters"), HasSubstr("now, began; left out")));
+    EXPECT_THAT(text, AllOf(HasSubstr("\"x0\": x0"), Not(HasSubstr("\"now\": now"))));
+  }
+}
+
+TEST(ImportFmu, UnitsThatAreNotDefinedAreNamed) {
+  const TestFolder folder;
+  TestUnit unit = spring_return("fmu_spring_return2");
+  const auto put = [&](const std::string& before, const std::string& text) {
+    unit.variables.insert(unit.variables.find(before), text + " ");
+  };
+  put("start=\"20\"", "unit=\"t\""), put("start=\"2e3\"", "unit=\"N.s/m\""), put("start=\"1e4\"", "unit=\"kN/m\"");
+  std::string text;
+  EXPECT_THAT(told_of(folder, unit, text), AllOf(HasSubstr("kN/m (k_s), t (M): the FMU does not define these units"),
+                                                 HasSubstr("1e5[Pa]*p"), Not(HasSubstr("N.s/m"))));
+}
+
+TEST(ImportFmu, AUnitTakenForCoSimulationIsToldOfItsOtherInterface) {
+  const TestFolder folder;
+  std::string text;
+  EXPECT_EQ(told_of(folder, mixed("fmu_mixed2"), text, Choice::co_simulation), "");
+  EXPECT_THAT(text, HasSubstr("Imported with --interface me it can be asked for physics too"));
+  EXPECT_EQ(told_of(folder, gain(), text), "");
+  EXPECT_THAT(text, HasSubstr("Exported for Model Exchange it can be asked for physics too"));
+}
+
 }  // namespace
 }  // namespace sealwatch::fmi

@@ -31,7 +31,9 @@ class WrapperExporter {
     const ModelDescription& inner = block_.file->description();
     if (block_.setup.co_simulation != 0)
       return refuse("is run for Co-Simulation, where no law can be added to a derivative",
-                    "export the model for Model Exchange from its tool; laws.c and laws.mo have the laws");
+                    std::string(inner.offers_exchange ? "take `interface: me` in its plant file"
+                                                      : "export the model for Model Exchange from its tool") +
+                        "; laws.c and laws.mo have the laws");
     if (const std::string fault = fault_of_types(); !fault.empty())
       return refuse(fault, "leave it out of the plant file, or export the model as FMI 2.0 from its tool");
     auto terms = resolve_physics(plant_.description, plant_.description.sites, asset_);

@@ -16,11 +16,14 @@ struct NameAndUnit {
   std::string_view unit;
 };
 
-Result<NameAndUnit> split_cell(std::string_view cell) {
+/// "force[1].u" and "y[2]" are names, as simulators have them; "1" is the unit of a plain number.
+NameAndUnit split_cell(std::string_view cell) {
   const std::size_t open = cell.find('[');
-  if (open == std::string_view::npos) return NameAndUnit{.name = cell, .unit = {}};
-  if (cell.back() != ']') return fail(error_at({}, cell, "a header cell must read channel[unit]"));
-  return NameAndUnit{.name = cell.substr(0, open), .unit = cell.substr(open + 1, cell.size() - open - 2)};
+  const NameAndUnit whole{.name = cell, .unit = {}};
+  if (open == std::string_view::npos || cell.back() != ']') return whole;
+  const std::string_view unit = cell.substr(open + 1, cell.size() - open - 2);
+  const bool index = !unit.empty() && unit != "1" && unit.find_first_not_of("0123456789,") == std::string_view::npos;
+  return index ? whole : NameAndUnit{.name = cell.substr(0, open), .unit = unit};
 }
 
 /// SI unit of a channel, "" when the plant has no such channel.
@@ -66,22 +69,26 @@ Result<Column> find_column(std::string_view cell, const PlantDescription& plant)
     return fail(error_at({}, cell, "is not a channel of plant " + plant.name,
                          "cells are separated by commas; for a log in a layout of its own: sealwatch asset new --from "
                          "LOG (docs/logs.md)"));
-  const Result<NameAndUnit> parts = split_cell(cell);
-  if (!parts) return fail(parts.error());
-  if (parts->name.empty()) return fail(error_at({}, cell, "a header cell must name its channel"));
-  const std::string_view si_unit = si_unit_of(parts->name, plant);
+  const auto [name, unit] = split_cell(cell);
+  if (const auto open = cell.find('['); open != std::string_view::npos && name == cell && cell.back() != ']' &&
+                                        !si_unit_of(cell.substr(0, open), plant).empty())
+    return fail(error_at({}, cell, "a header cell must read channel[unit]"));
+  if (name.empty()) return fail(error_at({}, cell, "a header cell must name its channel"));
+  const std::string_view si_unit = si_unit_of(name, plant);
   if (si_unit.empty()) {
-    if (const std::string meant = nearest_channel(parts->name, plant); !meant.empty())
-      return fail(error_at({}, cell, "is not a channel of plant " + plant.name, "did you mean '" + meant + "'?"));
+    if (const std::string meant = nearest_channel(name, plant); !meant.empty())
+      return fail(
+          error_at({}, cell, "is not a channel of plant " + plant.name,
+                   "did you mean '" + meant + "'? Then name it so, or with a map (docs/logs.md); else take it out"));
     return Column{.name = printable(cell), .si_unit = {}, .to_si = {}, .known = false};
   }
-  Result<UnitConversion> conversion = convert_unit(parts->unit, si_unit);
+  Result<UnitConversion> conversion = convert_unit(unit, si_unit);
   if (!conversion) {
-    Error error = error_at({}, cell, "unit '" + printable(parts->unit) + "' " + conversion.error().rule,
-                           conversion.error().advice);
+    Error error =
+        error_at({}, cell, "unit '" + printable(unit) + "' " + conversion.error().rule, conversion.error().advice);
     return fail(std::move(error));
   }
-  return Column{.name = std::string(parts->name), .si_unit = std::string(si_unit), .to_si = *conversion};
+  return Column{.name = std::string(name), .si_unit = std::string(si_unit), .to_si = *conversion};
 }
 
 Result<std::vector<Column>> find_columns(std::span<const std::string_view> cells, const PlantDescription& plant) {

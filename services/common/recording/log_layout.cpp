@@ -507,7 +507,8 @@ NameAndUnitText split_header_cell(std::string_view cell) {
     if (blank != std::string_view::npos && blank + 1 < at && convert_unit(word, "Pa"))  // "PT-1 bar(g)"
       return {std::string(trim(cell.substr(0, blank))), std::string(word)};
     const std::string_view unit = trim(cell.substr(at + 1, cell.size() - at - 2));
-    if (is_index(unit)) continue;
+    const bool derivative = open == '(' && at == 3 && cell.starts_with("der");  // of a state s, say
+    if (is_index(unit) || derivative) continue;
     if (open == '[' || is_unit(unit) || TimeFormat::of(unit).has_value())
       return {std::string(trim(cell.substr(0, at))), std::string(unit)};
   }

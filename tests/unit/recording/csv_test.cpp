@@ -78,8 +78,17 @@ TEST(Csv, HeaderErrorsNameRowAndColumn) {
               HasSubstr("unit 'mm' cannot be converted to Pa; units of this channel: Pa, bar, MPa, kPa, psi"));
   EXPECT_THAT(error_of("time,pressure_a[bar\n0,1\n"), HasSubstr("channel[unit]"));
   EXPECT_THAT(error_of("time,pressure_a[bar]x\n0,1\n"), HasSubstr("channel[unit]"));
+  EXPECT_THAT(error_of("time,position_[1].s\n0,1\n"),
+              HasSubstr("did you mean 'position'? Then name it so, or with a map (docs/logs.md); else take it out"));
   EXPECT_THAT(error_of("time;position\n0;1\n"), HasSubstr("separated by commas"));
   EXPECT_THAT(error_of("time,\n0,1\n"), HasSubstr("row 1, column 2"));
+}
+
+// As simulators name elements of arrays.
+TEST(Csv, AColumnOfAnotherNameMayHoldBrackets) {
+  const Result<ColumnarSamples> result = read("time,position,axis[1].torque,axis[2],der(s)\n0,1,2,3,4\n");
+  ASSERT_TRUE(result) << result.error().describe();
+  EXPECT_THAT(result->left_aside, testing::ElementsAre("axis[1].torque", "axis[2]", "der(s)"));
 }
 
 TEST(Csv, ErrorsCanBePrintedWhateverTheFileHolds) {

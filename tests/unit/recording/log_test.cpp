@@ -167,6 +167,7 @@ TEST(HeaderCell, AnIndexInBracketsIsNoUnit) {
     EXPECT_EQ(split_header_cell(cell).name, cell);
     EXPECT_EQ(split_header_cell(cell).unit, "");
   }
+  EXPECT_EQ(split_header_cell("der(s)").name, "der(s)");
   EXPECT_EQ(split_header_cell("ratio[1]").name, "ratio");
   EXPECT_EQ(split_header_cell("s[m]").unit, "m");
 }

@@ -30,6 +30,7 @@ constexpr std::array kMeanings = {
     Row{"recording_not_taken", "a recording was not taken"},
     Row{"sensor_lost", "sensor lost"},
     Row{"awaits_confirmation", "an act waits for a second person"},
+    Row{"unpublished_model", "an accepted model does not count"},
     Row{"unknown_writer", "messages from an unknown writer"},
     Row{"flood", "messages dropped"},
     Row{"missing_blocks", "samples do not come"},

@@ -240,6 +240,12 @@ std::size_t PrognosticAssessment::held() const {
   return held;
 }
 
+std::vector<Refusal> PrognosticAssessment::waiting() const {
+  std::vector<Refusal> all;
+  for (const auto& [asset_id, model] : accepted_) std::ranges::move(model.waiting(), std::back_inserter(all));
+  return all;
+}
+
 Conclusion PrognosticAssessment::tick(UtcTime now) {
   Conclusion conclusion;
   for (auto& [asset_id, model] : accepted_) model.tick(now, conclusion);

@@ -48,6 +48,7 @@ class PrognosticAssessment final : public Layer {
   [[nodiscard]] Conclusion receive(const Message& input) override;
   [[nodiscard]] Conclusion receive_until(const Message& input, const std::stop_token& stop) override;
   [[nodiscard]] std::size_t held() const override;
+  [[nodiscard]] std::vector<Refusal> waiting() const override;
   [[nodiscard]] Conclusion tick(UtcTime now) override;
 
  private:

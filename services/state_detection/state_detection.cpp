@@ -288,6 +288,12 @@ std::size_t StateDetection::held() const {
   return held;
 }
 
+std::vector<Refusal> StateDetection::waiting() const {
+  std::vector<Refusal> all;
+  for (const auto& [asset_id, state] : states_) std::ranges::move(state.accepted.waiting(), std::back_inserter(all));
+  return all;
+}
+
 void StateDetection::note_lateness(const AssetState& state, const AssetConfig& asset, StateReport& report) const {
   if (!report.header.event_time_known) return;
   const auto late =

@@ -51,6 +51,7 @@ class StateDetection final : public Layer {
   [[nodiscard]] Conclusion receive_until(const Message& input, const std::stop_token& stop) override;
   [[nodiscard]] Conclusion tick(UtcTime now) override;
   [[nodiscard]] std::size_t held() const override;
+  [[nodiscard]] std::vector<Refusal> waiting() const override;
 
  private:
   struct AssetState {

@@ -45,6 +45,7 @@ inline constexpr std::array kNe107 = {
     Ne107Row{"refused_right", Ne107::out_of_specification},
     Ne107Row{"clock_unsynchronised", Ne107::maintenance_required},
     Ne107Row{"awaits_confirmation", Ne107::maintenance_required},
+    Ne107Row{"unpublished_model", Ne107::maintenance_required},
     Ne107Row{kAdviceAlarm, Ne107::maintenance_required},
     Ne107Row{kOverdueAlarm, Ne107::maintenance_required},
 };

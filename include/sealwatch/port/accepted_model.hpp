@@ -1,6 +1,6 @@
 // The explained model that an operator has accepted for one asset, as layers keep it. Only what the services published
 // comes into force: an acceptance names a model_discrepancy and carries its model, unaltered. One that comes before the
-// discrepancy waits for it. The next acceptance, a revocation or a replacement of what was analysed ends it.
+// discrepancy waits for it, and people are told. The next acceptance, a revocation or a replacement of what was analysed ends it.
 //
 // The inputs themselves are the memory: the acceptance in force, the last few discrepancies, and acceptances that wait
 // stay unconsumed.
@@ -70,6 +70,15 @@ class AcceptedModel {
     while (!waiting_.empty() &&
            now.nanoseconds - waits_since_.at(waiting_.front().header.message_id).nanoseconds > kPatience_ns)
       refuse_first("no service has published it", conclusion);
+  }
+
+  /// Acceptances that count for nothing until the services publish what they name.
+  [[nodiscard]] std::vector<Refusal> waiting() const {
+    std::vector<Refusal> all;
+    for (const ModelAcceptance& one : waiting_)
+      all.push_back({one, "no service has published '" + one.discrepancy_id + "', whose model " + one.accepted_by +
+                              " accepted: until one does it does not count"});
+    return all;
   }
 
   [[nodiscard]] bool in_force() const { return in_force_.has_value(); }

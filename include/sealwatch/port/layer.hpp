@@ -90,6 +90,8 @@ class Layer {
   }
   /// How many of its unconsumed inputs it keeps as its memory: they wait for nothing.
   [[nodiscard]] virtual std::size_t held() const { return 0; }
+  /// Acts among them that count for nothing until something comes, which may never come, and what: people are told.
+  [[nodiscard]] virtual std::vector<Refusal> waiting() const { return {}; }
   /// Lets time pass in live operation (never called in replay or offline): tests that became overdue, tests whose end
   /// never came. Must depend on `now` only in whether it concludes, not in what.
   [[nodiscard]] virtual Conclusion tick(UtcTime now) {

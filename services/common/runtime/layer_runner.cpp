@@ -502,7 +502,9 @@ Status LayerRunner::let_time_pass() {
   if (now - started_ < options_.settling || (full_since_ && now - *full_since_ < options_.longest_wait)) return {};
   for (const std::string& asset_id : lanes_.assets()) {
     Layer* const layer = at_rest(asset_id);
-    if (layer == nullptr || time_stands_still(asset_id) || may_be_on_its_way(asset_id)) continue;
+    if (layer == nullptr) continue;
+    tell_of_waiting(asset_id, *layer);
+    if (time_stands_still(asset_id) || may_be_on_its_way(asset_id)) continue;
     Conclusion conclusion = layer->tick(believed_time());
     if (conclusion.outputs.empty() && conclusion.consumed.empty()) continue;
     const Survives survives = conclusion.refused.empty() ? Survives::kills : Survives::power_cuts;

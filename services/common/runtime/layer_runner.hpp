@@ -230,6 +230,7 @@ class LayerRunner {
   void look_for_future_test(const std::string& asset_id);
   void note_unknown_asset(const Message& message, const std::string& refused);
   void note_alarms_of(const Message& output);
+  void tell_of_waiting(const std::string& asset_id, const Layer& layer);
   void look_for_trouble();
 
   // The states of all alarms (layer_runner_desk.cpp).
@@ -260,6 +261,8 @@ class LayerRunner {
   /// Writes down who said it, and what becomes of it: `state` for what no person said.
   [[nodiscard]] InputState note_act(const Message& message, const std::optional<std::string>& refused, InputState state,
                                     const ActRecord* record);
+  /// The outcome of an act that its layer is given.
+  [[nodiscard]] std::string outcome_of_taken(const Message& message);
   /// Notes that an act was refused; whether it is kept. Of the others the record says how many there are.
   [[nodiscard]] bool keeps_refused(const Message& act, const std::string& refused);
   [[nodiscard]] std::optional<std::string> refusal_of_ahead(const Message& message) const;
@@ -455,7 +458,8 @@ class LayerRunner {
   std::map<std::string, bool> replaying_;  ///< by asset: its last input was played back
   std::string last_error_;                 ///< with its time
   Alarms alarms_;
-  std::vector<RefusedTest> refused_tests_;                            ///< the newest last
+  std::map<std::string, std::map<std::string, Alarms::Steady>> acts_waiting_;  ///< by asset and id: since when
+  std::vector<RefusedTest> refused_tests_;                                     ///< the newest last
   std::vector<std::pair<ServiceAlarm, bool>> changed_refused_tests_;  ///< not yet in the journal: whether it stands
   std::optional<AlarmDesk> desk_;
   RecalledAlarmActs recalled_;

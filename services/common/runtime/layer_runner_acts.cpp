@@ -181,6 +181,14 @@ bool LayerRunner::may_be_fetched_later(const Message& message) const {
   return admission_.refusal_of_idle(message) || refusal_of_ahead(message) || refusal_of_many(message);
 }
 
+std::string LayerRunner::outcome_of_taken(const Message& message) {
+  const auto* const accepted = std::get_if<ModelAcceptance>(&message);
+  const bool hears_of_models = std::ranges::find(kind_->inputs(), Topic::model_discrepancy) != kind_->inputs().end();
+  if (accepted == nullptr || accepted->revoked || !hears_of_models) return kTaken;
+  const std::string& named = accepted->discrepancy_id;
+  return taken_ids_.contains(named) || journal_.has_input(named).value_or(true) ? kTaken : kTakenAndWaits;
+}
+
 InputState LayerRunner::note_act(const Message& message, const std::optional<std::string>& refused, InputState state,
                                  const ActRecord* record) {
   const bool waits = !refused && waits_for_second(message);
@@ -188,7 +196,7 @@ InputState LayerRunner::note_act(const Message& message, const std::optional<std
   const bool is_fetched_early = record != nullptr && !waits_at_desk && !is_its_turn(message);
   const bool is_ahead = waits_at_desk || (!refused && !waits && (admission_.is_ahead(message) || is_fetched_early));
   if (is_ahead && is_fetched_early) awaits_quiet_.insert(asset_of(message));
-  std::string outcome = refused ? *refused : waits ? kWaits : is_ahead ? kAhead : kTaken;
+  std::string outcome = refused ? *refused : waits ? kWaits : is_ahead ? kAhead : outcome_of_taken(message);
   if (record != nullptr)
     outcome += (is_ahead && record->is_ahead ? kAsElsewhere : kFetchedBack) + visible(record->header.producer);
   if (auto act = act_of(message, clock_.now(), outcome)) acts_.push_back(std::move(*act));
@@ -217,7 +225,7 @@ Status LayerRunner::give_acts_ahead(const std::string& asset_id) {
       awaits_quiet_.insert(asset_id);
       continue;
     }
-    if (auto taken = act_of(**act, clock_.now(), kTaken)) acts_.push_back(std::move(*taken));
+    if (auto taken = act_of(**act, clock_.now(), outcome_of_taken(**act))) acts_.push_back(std::move(*taken));
     keep_record(**act, false);
     no_longer_awaiting_[act_id] = InputState::open;
     said_ahead_.erase(act_id);

@@ -27,6 +27,7 @@ constexpr const char* kClockStep = "clock_step";
 constexpr const char* kClockUnsynchronised = "clock_unsynchronised";
 constexpr const char* kFlood = "flood";
 constexpr const char* kMissingBlocks = "missing_blocks";
+constexpr const char* kUnpublishedModel = "unpublished_model";
 constexpr const char* kOtherSenders = "others";
 constexpr std::size_t kMostNamedRefusals = 8;
 constexpr std::ptrdiff_t kMostRefusedSenders = 4;  ///< of an asset
@@ -346,6 +347,31 @@ void LayerRunner::tell_of_missing_blocks() {
                                       steady_now() + kBlocksCame);
     if (is_new) log_event(LogLevel::warn, "blocks are missing", {{"writer", gap.writer_id}, {"error", text}});
   }
+}
+
+/// What comes a moment later is no news to anybody.
+void LayerRunner::tell_of_waiting(const std::string& asset_id, const Layer& layer) {
+  const std::vector<Refusal> waiting = layer.waiting();
+  if (waiting.empty() && !acts_waiting_.contains(asset_id)) return;
+  std::map<std::string, Alarms::Steady>& since = acts_waiting_[asset_id];
+  for (const Refusal& one : waiting) {
+    const std::string& act_id = header_of(one.input).message_id;
+    if (steady_now() - since.try_emplace(act_id, steady_now()).first->second < options_.records_wait) continue;
+    const bool is_new = alarms_.raise({.kind = kUnpublishedModel,
+                                       .asset_id = asset_id,
+                                       .subject = act_id,
+                                       .pst_id = {},
+                                       .text = visible(one.reason),
+                                       .since_ns = clock_.now().nanoseconds});
+    if (is_new) log_message(LogLevel::warn, "waits", one.input, {{"reason", one.reason}});
+  }
+  std::erase_if(since, [&](const auto& told) {
+    const auto waits = [&](const Refusal& one) { return header_of(one.input).message_id == told.first; };
+    if (std::ranges::any_of(waiting, waits)) return false;
+    alarms_.clear(kUnpublishedModel, asset_id, told.first);
+    return true;
+  });
+  if (since.empty()) acts_waiting_.erase(asset_id);
 }
 
 /// About once a second.

@@ -17,6 +17,8 @@ namespace sealwatch {
 
 /// The outcome of an act that counts; where it is fetched back, more follows.
 inline constexpr const char* kTaken = "taken";
+/// Of an accepted model that counts for nothing yet (Layer::waiting).
+inline constexpr const char* kTakenAndWaits = "taken, and waits until a service has published what it accepts";
 [[nodiscard]] bool is_taken(std::string_view outcome);
 
 /// Outcomes of acts that may come to count, and what follows where a neighbour's record of one was taken.

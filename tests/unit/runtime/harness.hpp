@@ -81,6 +81,7 @@ class MortalLayer final : public Layer {
     return conclusion;
   }
   std::size_t held() const override { return layer_->held(); }
+  std::vector<Refusal> waiting() const override { return layer_->waiting(); }
   Conclusion tick(UtcTime now) override { return layer_->tick(now); }
 
  private:

@@ -10,6 +10,7 @@
 
 #include "sealwatch/message/confirmation.hpp"
 #include "sealwatch/message/replacement_id.hpp"
+#include "sealwatch/port/accepted_model.hpp"
 #include "services/common/runtime/identity.hpp"
 #include "services/common/store/journal.hpp"
 #include "services/common/store/quarantine_desk.hpp"
@@ -106,6 +107,86 @@ class TestsAndActsLayer final : public Layer {
   static constexpr std::array kInputs = {Topic::health_report, Topic::maintenance_event};
   static constexpr std::array kOutputs = {Topic::advisory};
 };
+
+/// Keeps accepted models, and nothing else.
+class AcceptingLayer final : public Layer {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "advisory_generation"; }
+  [[nodiscard]] std::span<const Topic> inputs() const override { return kInputs; }
+  [[nodiscard]] std::span<const Topic> outputs() const override { return kOutputs; }
+  void restore(const Message& /*own*/) override {}
+  [[nodiscard]] Conclusion receive(const Message& input) override {
+    Conclusion conclusion;
+    if (const auto* published = std::get_if<ModelDiscrepancy>(&input)) accepted_.take(*published, conclusion);
+    if (const auto* acceptance = std::get_if<ModelAcceptance>(&input)) accepted_.take(*acceptance, conclusion);
+    return conclusion;
+  }
+  [[nodiscard]] std::size_t held() const override { return accepted_.held(); }
+  [[nodiscard]] std::vector<Refusal> waiting() const override { return accepted_.waiting(); }
+
+ private:
+  static constexpr std::array kInputs = {Topic::model_discrepancy, Topic::model_acceptance};
+  static constexpr std::array kOutputs = {Topic::advisory};
+  AcceptedModel accepted_;
+};
+
+/// It waited as if it counted, and nobody knew for an hour.
+TEST_F(ActsTest, AModelThatNoServicePublishedIsAnAlarmUntilOneDoes) {
+  RunnerOptions options = fast_options();
+  options.records_wait = std::chrono::milliseconds(50);
+  const auto begin = [&] {
+    auto started = std::make_unique<Process>(
+        network_, [] { return std::make_unique<AcceptingLayer>(); }, place_.connection(), Fate(), options);
+    started->start();
+    return started;
+  };
+  auto process = begin();
+  InMemoryBus listener(network_);
+  ASSERT_TRUE(listener.subscribe_service_topics());
+  const auto told = [&](bool is_told) {
+    return step_until(
+        [&] {
+          process->step();
+          bool found = !is_told;
+          for (const BusItem& item : listener.receive(std::chrono::milliseconds(5), 1000))
+            if (const auto* status = std::get_if<ServiceStatus>(&item))
+              found = std::ranges::any_of(status->alarms, [](const ServiceAlarm& alarm) {
+                return alarm.kind == "unpublished_model" && alarm.subject == "model_acceptance/A/1" &&
+                       alarm.text.find("model_discrepancy/A-7") != std::string::npos;
+              });
+          return found == is_told;
+        },
+        [] {});
+  };
+  ModelAcceptance acceptance;
+  acceptance.asset_id = "A";
+  acceptance.header = header("model_acceptance/A/1", "");
+  acceptance.discrepancy_id = "model_discrepancy/A-7";
+  acceptance.accepted_by = "J. Silva";
+  acceptance.explained.model = "eha";
+  say(*process, acceptance);
+  EXPECT_TRUE(told(true));
+  ASSERT_THAT(acts(), SizeIs(1));
+  EXPECT_EQ(acts()[0].act.outcome, kTakenAndWaits);
+  process.reset();
+  process = begin();
+  EXPECT_TRUE(told(true)) << "after a restart";
+  ModelDiscrepancy published;
+  published.asset_id = "A";
+  published.header = header("model_discrepancy/A-7", "");
+  published.version = acceptance.version;
+  published.header.event_time_ns = acceptance.discrepancy_time_ns;
+  published.analysed = true;
+  published.verdict = DiscrepancyVerdict::mismatch;
+  published.physics = {{}};
+  published.explained = acceptance.explained;
+  say(*process, published);
+  EXPECT_TRUE(told(false));
+  EXPECT_THAT(acts(), SizeIs(1)) << "it is not refused";
+  acceptance.header = header("model_acceptance/A/2", "");
+  say(*process, acceptance);
+  EXPECT_EQ(acts().back().act.outcome, kTaken);
+}
 
 /// Whoever lost its journal while all were down goes on under another name, and must learn what it has lost.
 TEST_F(ActsTest, WhatWasReadOfASilentNeighbourIsToldAfterARestart) {

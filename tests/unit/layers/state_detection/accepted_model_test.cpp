@@ -196,8 +196,11 @@ TEST(AcceptedModel, ThatComesBeforeItsDiscrepancyWaitsForItAndNotForEver) {
   one.take(acceptance("D1", 1));
   EXPECT_FALSE(one.model.in_force());
   EXPECT_EQ(one.model.held(), 1U);
+  ASSERT_EQ(one.model.waiting().size(), 1U);
+  EXPECT_THAT(one.model.waiting()[0].reason, ::testing::HasSubstr("no service has published 'D1'"));
   one.take(discrepancy("D1"));
   EXPECT_EQ(one.model.discrepancy_id(), "D1");
+  EXPECT_TRUE(one.model.waiting().empty());
   ModelAcceptance invented = acceptance("invented", 2);
   invented.header.event_time_ns = synthetic::month(4).nanoseconds;
   one.take(invented);

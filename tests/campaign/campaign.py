@@ -30,7 +30,7 @@ import time
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(SOURCE / "tests/perf/services"))
-from services import memory_MB, quantile  # noqa: E402  (what the measurements of speed use)
+from services import cpu_s, memory_MB, quantile  # noqa: E402  (what the measurements of speed use)
 
 SERVICES = ["data-acquisition", "data-manipulation", "state-detection", "health-assessment", "prognostic-assessment",
             "advisory-generation"]
@@ -593,13 +593,14 @@ class Campaign:
             with open(arrived, "w") as output:
                 reader = subprocess.Popen([perf, "receive", str(2 * seconds + 24)], env=world.environment, stdout=output)
             sender = subprocess.Popen([perf, "send", "spread", str(self.arguments.live), str(2 * seconds + 12)], env=world.environment)
-            time.sleep(6.0 + seconds)  # joined, every layer has met its first blocks, and what there is without a flood
+            time.sleep(6.0)  # joined, and every layer has met its first blocks
+            shares = [self.busy(world, lambda: time.sleep(seconds))]  # what there is without a flood
             before, flood_ns = world.sizes(), time.time_ns()
             stranger = None if what == "nothing" else subprocess.Popen(
                 [self.binaries / "campaign/flood", what, str(seconds), str(LIVE_DOMAIN)], env=world.environment,
                 stdout=subprocess.PIPE, text=True)
             if stranger:
-                stranger.wait()
+                shares.append(self.busy(world, stranger.wait))
             load, end_ns = os.getloadavg()[0], time.time_ns() if stranger else sys.maxsize
             status = world.run("status", "--json", "--seconds", "1").stdout
             reader.wait()
@@ -623,7 +624,15 @@ class Campaign:
             raise Failed(f"flood of {what}: {most} grew by {grown[most]:.0f} MB")
         return (f"{what}: {sent} messages, {len(places)} live blocks all there, p50 {quantile(beside, 0.5):.1f}"
                 f" p99 {quantile(beside, 0.99):.1f} ms, before it {quantile(alone, 0.5):.1f} and"
-                f" {quantile(alone, 0.99):.1f} ms, load {load:.0f}; {most} grew most, by {grown[most]:.0f} MB")
+                f" {quantile(alone, 0.99):.1f} ms, load {load:.0f}; {most} grew most, by {grown[most]:.0f} MB;"
+                f" ms of a processor per second: {', before it '.join(shares[::-1])}")
+
+    def busy(self, world, waits):
+        """Of each service, while one waits."""
+        begin, before = time.monotonic(), {name: cpu_s(process.pid) for name, process in world.processes.items()}
+        waits()
+        took = time.monotonic() - begin
+        return " ".join(f"{1000 * (cpu_s(process.pid) - before[name]) / took:.0f}" for name, process in world.processes.items())
 
     def messages(self):
         """One true message of each topic, as somebody may have overheard it."""

@@ -132,7 +132,7 @@ Status LayerRunner::step(std::chrono::milliseconds timeout) {
   timeout = until_looking_back(timeout);
   if (lanes_.on_trial()) timeout = std::min(timeout, kTrialLook);
   if (!outbox_.empty() || !resends_.empty()) timeout = std::min(timeout, Outbox::kShortestPause);
-  const bool may_resend = !resends_.empty() && resends_.may_send(steady_clock::now());
+  const bool may_resend = resends_.next(steady_clock::now()).has_value();
   const bool takes_local = may_take_local();
   const bool work_waits = !ready_.empty() || may_resend || takes_local;
   std::vector<BusItem> items = bus_.receive(work_waits ? std::chrono::milliseconds(0) : timeout, kBatch);

@@ -10,6 +10,9 @@ namespace {
 
 /// For how long messages are sent again before new ones are looked at, and how many before the time is.
 constexpr std::chrono::milliseconds kTurn{5};
+constexpr std::chrono::milliseconds kTurnBesideLive{2};
+/// What came so recently is followed by more.
+constexpr std::chrono::milliseconds kLive{100};
 constexpr std::uint64_t piece_of(Topic topic) { return topic == Topic::test_window ? 1 : 16; }
 /// A topic that the bus has not taken for so long is worth a line: a reader is stuck, not only slow.
 constexpr std::chrono::seconds kStuck{2};
@@ -159,19 +162,22 @@ void LayerRunner::send_outbox() {
 
 Status LayerRunner::serve_resends() {
   const auto begin = std::chrono::steady_clock::now();
-  if (resends_.empty() || !resends_.may_send(begin)) return {};
+  const auto whom = resends_.next(begin);
+  if (!whom) return {};
+  const bool beside_live = begin - last_work_ < kLive;
   bool goes_on = true;
   while (goes_on) {
-    const auto range = resends_.take(piece_of(resends_.next_topic()));
+    const auto range = resends_.take(*whom, piece_of(*resends_.next_topic(*whom)));
     if (outbox_.pauses(range->topic, begin)) break;  // who misses it asks again
     auto messages = journal_.outputs(range->topic, range->first, range->last, range->last - range->first + 1);
     if (!messages) return fail(messages.error());
     goes_on = std::ranges::all_of(*messages, [this](Message& message) { return publish(message, "sent again"); }) &&
-              !resends_.empty() && std::chrono::steady_clock::now() - begin < kTurn;
+              resends_.next_topic(*whom) &&
+              std::chrono::steady_clock::now() - begin < (beside_live ? kTurnBesideLive : kTurn);
   }
   // At once: who joins between two turns would take a test of years ago for the last word.
   Status latest = publish_latest();
-  resends_.note_sent(begin, std::chrono::steady_clock::now());
+  resends_.note_sent(*whom, begin, std::chrono::steady_clock::now(), beside_live);
   if (heartbeat_) heartbeat_->beat_soon();  // readers of an older sealwatch wait for it after half a window
   return latest;
 }

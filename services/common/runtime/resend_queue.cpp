@@ -5,6 +5,14 @@
 #include "services/common/runtime/stream_window.hpp"
 
 namespace sealwatch {
+namespace {
+
+/// So many times as long as sending took, the same are not sent to.
+constexpr int kRest = 1;
+constexpr int kRestBesideLive = 4;
+constexpr int kRestOfStrangers = 4;
+
+}  // namespace
 
 std::uint64_t ResendQueue::waiting(const std::string* by) const {
   std::uint64_t count = 0;
@@ -32,7 +40,7 @@ bool ResendQueue::add(Range wanted, std::uint64_t sent, const std::string& by, T
     return range.topic == wanted.topic && range.first - 1 <= wanted.last && wanted.first - 1 <= range.last;
   };
   for (auto one = waiting_.begin(); one != waiting_.end();) {
-    if (touches(one->range)) {
+    if (whom(one->by) == whom(by) && touches(one->range)) {
       wanted.first = std::min(wanted.first, one->range.first);
       wanted.last = std::max(wanted.last, one->range.last);
       one = waiting_.erase(one);
@@ -44,16 +52,40 @@ bool ResendQueue::add(Range wanted, std::uint64_t sent, const std::string& by, T
   return true;
 }
 
-std::optional<ResendQueue::Range> ResendQueue::take(std::uint64_t most) {
-  if (waiting_.empty()) return std::nullopt;
-  Waiting taken = std::move(waiting_.front());
-  waiting_.pop_front();
+std::deque<ResendQueue::Waiting>::const_iterator ResendQueue::first(For whom) const {
+  return std::ranges::find_if(waiting_, [whom](const Waiting& one) { return ResendQueue::whom(one.by) == whom; });
+}
+
+std::optional<ResendQueue::For> ResendQueue::next(Time now) const {
+  for (const For whom : {For::readers, For::strangers}) {
+    const auto rest = rests_until_.find(whom);
+    const bool rests = rest != rests_until_.end() && now < rest->second;
+    if (!rests && first(whom) != waiting_.end()) return whom;
+  }
+  return std::nullopt;
+}
+
+std::optional<Topic> ResendQueue::next_topic(For whom) const {
+  const auto found = first(whom);
+  return found == waiting_.end() ? std::nullopt : std::optional(found->range.topic);
+}
+
+std::optional<ResendQueue::Range> ResendQueue::take(For whom, std::uint64_t most) {
+  const auto found = first(whom);
+  if (found == waiting_.end()) return std::nullopt;
+  Waiting taken = *found;
+  waiting_.erase(found);
   if (taken.range.last - taken.range.first >= most) {
     const Range rest{taken.range.topic, taken.range.first + most, taken.range.last};
     taken.range.last = rest.first - 1;
     waiting_.push_back({rest, taken.by});
   }
   return taken.range;
+}
+
+void ResendQueue::note_sent(For whom, Time begin, Time end, bool beside_live) {
+  const int rest = (beside_live ? kRestBesideLive : kRest) * (whom == For::strangers ? kRestOfStrangers : 1);
+  rests_until_[whom] = end + rest * (end - begin);
 }
 
 }  // namespace sealwatch

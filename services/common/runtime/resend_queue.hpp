@@ -1,11 +1,16 @@
-// The writing side of the stream protocol: what others asked to have again, served a bounded number at a time, and at
-// most for half of the time, whoever asks for whatever. Nobody needs the same again at once, and nobody has more than a
-// share waiting: who asks for everything all the time gets each window about once a second, and holds up no other.
+// The writing side of the stream protocol: what others asked to have again, served a bounded number at a time, whoever
+// asks for whatever. Nobody needs the same again at once, and nobody has more than a share waiting: who asks for
+// everything all the time gets each window about once a second, and holds up no other.
+//
+// Sending again takes half of the time at most, and a fifth while live messages come: each of them goes to all readers,
+// and costs them their time as well. Who sends no heartbeat, as strangers do, gets a quarter of that, and holds up no
+// reader that does.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -34,31 +39,35 @@ class ResendQueue {
   /// Adds what is not waiting already: several readers that miss the same messages are served once. Of a stream that
   /// goes up to `sent`, of which there may be less than was asked for. False when it is passed over.
   bool add(Range wanted, std::uint64_t sent, const std::string& by = {}, Time now = {});
-  /// The next at most `most` messages to send, topics in turn.
-  [[nodiscard]] std::optional<Range> take(std::uint64_t most);
-  /// Whether it is time to send more: sending what was taken last took from `begin` to `end`.
-  [[nodiscard]] bool may_send(Time now) const { return now >= rest_until_; }
-  void note_sent(Time begin, Time end) { rest_until_ = end + (end - begin); }
+  enum class For { readers, strangers };
+  /// For whom it is time to send more: readers first.
+  [[nodiscard]] std::optional<For> next(Time now) const;
+  /// The next at most `most` messages to send to those, topics in turn.
+  [[nodiscard]] std::optional<Range> take(For whom, std::uint64_t most);
+  /// Of what is taken next; none where nothing waits.
+  [[nodiscard]] std::optional<Topic> next_topic(For whom) const;
+  /// Sending what was taken for those took from `begin` to `end`.
+  void note_sent(For whom, Time begin, Time end, bool beside_live);
   [[nodiscard]] bool empty() const { return waiting_.empty(); }
-  /// Of what is taken next; there is something.
-  [[nodiscard]] Topic next_topic() const { return waiting_.front().range.topic; }
 
  private:
   struct Waiting {
     Range range;
-    std::string by;  ///< who asked for it first
+    std::string by;  ///< who asked for it first; "": a stranger
   };
   struct Granted {
     Range range;
     std::string by;
     Time at;
   };
+  [[nodiscard]] static For whom(const std::string& by) { return by.empty() ? For::strangers : For::readers; }
   [[nodiscard]] std::uint64_t waiting(const std::string* by) const;
+  [[nodiscard]] std::deque<Waiting>::const_iterator first(For whom) const;
 
   std::chrono::milliseconds at_once_;
   std::deque<Waiting> waiting_;
   std::deque<Granted> granted_;  ///< a moment ago, in order
-  Time rest_until_{};
+  std::map<For, Time> rests_until_;
 };
 
 }  // namespace sealwatch

@@ -417,16 +417,23 @@ TEST_F(StreamReaderTest, AWriterThatCountsAnewIsReadFromItsStartButNotForEver) {
 }
 
 using Range = ResendQueue::Range;
+using For = ResendQueue::For;
 
 constexpr std::uint64_t kSent = 1'000'000;
+
+/// Whoever waits.
+std::optional<Range> take(ResendQueue& queue, std::uint64_t most) {
+  const auto for_readers = queue.take(For::readers, most);
+  return for_readers ? for_readers : queue.take(For::strangers, most);
+}
 
 TEST(ResendQueueTest, ServesBoundedPieces) {
   ResendQueue queue;
   queue.add({Topic::advisory, 1, 150}, kSent);
-  EXPECT_EQ(queue.take(64), (Range{Topic::advisory, 1, 64}));
-  EXPECT_EQ(queue.take(64), (Range{Topic::advisory, 65, 128}));
-  EXPECT_EQ(queue.take(64), (Range{Topic::advisory, 129, 150}));
-  EXPECT_EQ(queue.take(64), std::nullopt);
+  EXPECT_EQ(take(queue, 64), (Range{Topic::advisory, 1, 64}));
+  EXPECT_EQ(take(queue, 64), (Range{Topic::advisory, 65, 128}));
+  EXPECT_EQ(take(queue, 64), (Range{Topic::advisory, 129, 150}));
+  EXPECT_EQ(take(queue, 64), std::nullopt);
 }
 
 TEST(ResendQueueTest, ServesSeveralReadersThatMissTheSameOnce) {
@@ -435,8 +442,8 @@ TEST(ResendQueueTest, ServesSeveralReadersThatMissTheSameOnce) {
   EXPECT_TRUE(queue.add({Topic::advisory, 5, 20}, kSent, "another"));
   EXPECT_TRUE(queue.add({Topic::advisory, 21, 22}, kSent, "one"));
   EXPECT_TRUE(queue.add({Topic::state_report, 5, 6}, kSent, "one"));
-  EXPECT_EQ(queue.take(64), (Range{Topic::advisory, 1, 22}));
-  EXPECT_EQ(queue.take(64), (Range{Topic::state_report, 5, 6}));
+  EXPECT_EQ(take(queue, 64), (Range{Topic::advisory, 1, 22}));
+  EXPECT_EQ(take(queue, 64), (Range{Topic::state_report, 5, 6}));
   EXPECT_TRUE(queue.empty());
 }
 
@@ -445,7 +452,7 @@ TEST(ResendQueueTest, WhoAsksForTheSameAllTheTimeGetsItOnceInAWhile) {
   int served = 0;
   for (int ms = 0; ms < 9000; ++ms) {
     queue.add({Topic::advisory, 1, kHighest}, kSent, "flood", ResendQueue::Time(std::chrono::milliseconds(ms)));
-    served += queue.take(kHighest) ? 1 : 0;
+    served += take(queue, kHighest) ? 1 : 0;
   }
   EXPECT_EQ(served, 10);
   EXPECT_TRUE(queue.add({Topic::advisory, 1, 2}, kSent, "reader")) << "another one has not had it";
@@ -456,7 +463,7 @@ TEST(ResendQueueTest, WhoAsksForEverythingLeavesRoomForOthers) {
   for (std::uint64_t k = 0; k < 1000; ++k) queue.add({Topic::advisory, 256 * k + 1, 256 * k + 256}, kSent, "flood");
   ASSERT_TRUE(queue.add({Topic::state_report, 1, 256}, kSent, "reader"));
   std::uint64_t before = 0;
-  for (auto range = queue.take(16); range && range->topic == Topic::advisory; range = queue.take(16)) before += 16;
+  for (auto range = take(queue, 16); range && range->topic == Topic::advisory; range = take(queue, 16)) before += 16;
   EXPECT_LE(before, 32U) << "ranges take turns";
 }
 
@@ -464,9 +471,9 @@ TEST(ResendQueueTest, TakesTopicsInTurn) {
   ResendQueue queue;
   queue.add({Topic::advisory, 1, 100}, kSent);
   queue.add({Topic::state_report, 1, 1}, kSent);
-  EXPECT_EQ(queue.take(64)->topic, Topic::advisory);
-  EXPECT_EQ(queue.take(64)->topic, Topic::state_report);
-  EXPECT_EQ(queue.take(64)->topic, Topic::advisory);
+  EXPECT_EQ(take(queue, 64)->topic, Topic::advisory);
+  EXPECT_EQ(take(queue, 64)->topic, Topic::state_report);
+  EXPECT_EQ(take(queue, 64)->topic, Topic::advisory);
 }
 
 TEST(ResendQueueTest, ARequestOfAnyRangeCountsForAWindowAndNoMoreThanWasSent) {
@@ -474,7 +481,7 @@ TEST(ResendQueueTest, ARequestOfAnyRangeCountsForAWindowAndNoMoreThanWasSent) {
   const auto served = [](std::uint64_t first, std::uint64_t last, std::uint64_t sent) {
     ResendQueue queue;
     queue.add({Topic::advisory, first, last}, sent);
-    return queue.take(kHighest);
+    return take(queue, kHighest);
   };
   EXPECT_EQ(served(0, kHighest, 3), (Range{Topic::advisory, 1, 3}));
   EXPECT_EQ(served(0, kHighest, kSent), (Range{Topic::advisory, 1, window}));
@@ -489,32 +496,56 @@ TEST(ResendQueueTest, RequestsAtTheHighestNumberTouchWhatTheyTouch) {
   ResendQueue queue;
   queue.add({Topic::advisory, kHighest, kHighest}, kHighest);
   queue.add({Topic::advisory, 1, 2}, kHighest);
-  EXPECT_EQ(queue.take(64), (Range{Topic::advisory, kHighest, kHighest}));
-  EXPECT_EQ(queue.take(64), (Range{Topic::advisory, 1, 2}));
+  EXPECT_EQ(take(queue, 64), (Range{Topic::advisory, kHighest, kHighest}));
+  EXPECT_EQ(take(queue, 64), (Range{Topic::advisory, 1, 2}));
 }
 
 TEST(ResendQueueTest, AFloodOfRequestsWaitsBounded) {
   ResendQueue scattered;
   for (std::uint64_t k = 1; k <= 100'000; ++k) scattered.add({Topic::advisory, 3 * k, 3 * k}, kSent);
   std::uint64_t messages = 0;
-  while (const auto range = scattered.take(64)) messages += range->last - range->first + 1;
+  while (const auto range = take(scattered, 64)) messages += range->last - range->first + 1;
   EXPECT_LE(messages, ResendQueue::kMostWaiting);
   ResendQueue joined;  // each touches the one before: the whole journal would be one range
   for (std::uint64_t k = 0; k < 1000; ++k)
     joined.add({Topic::advisory, 256 * k + 1, 256 * k + 256}, kSent, "reader " + std::to_string(k % 8));
-  for (messages = 0; const auto range = joined.take(64);) messages += range->last - range->first + 1;
+  for (messages = 0; const auto range = take(joined, 64);) messages += range->last - range->first + 1;
   EXPECT_LE(messages, ResendQueue::kMostWaiting);
   EXPECT_GE(messages, 1000U);
 }
 
-TEST(ResendQueueTest, RestsForAsLongAsItSent) {
+TEST(ResendQueueTest, RestsForAsLongAsItSentAndLongerBesideWhatIsLive) {
+  using std::chrono::milliseconds;
+  const ResendQueue::Time begin{};
+  const auto rest_ms = [&](const std::string& by, For whom, bool beside_live) {
+    ResendQueue queue;
+    queue.add({Topic::advisory, 1, 2}, kSent, by);
+    EXPECT_EQ(queue.next(begin), whom);
+    queue.note_sent(whom, begin, begin + milliseconds(30), beside_live);
+    int ms = 30;
+    while (!queue.next(begin + milliseconds(ms))) ++ms;
+    return ms - 30;
+  };
+  EXPECT_EQ(rest_ms("reader", For::readers, false), 30);
+  EXPECT_EQ(rest_ms("reader", For::readers, true), 4 * 30);
+  EXPECT_EQ(rest_ms("", For::strangers, false), 4 * 30);
+  EXPECT_EQ(rest_ms("", For::strangers, true), 16 * 30);
+}
+
+/// What a stranger asks for beside a reader neither takes that reader's place in the queue nor its time.
+TEST(ResendQueueTest, StrangersHoldUpNoReader) {
   using std::chrono::milliseconds;
   ResendQueue queue;
   const ResendQueue::Time begin{};
-  EXPECT_TRUE(queue.may_send(begin));
-  queue.note_sent(begin, begin + milliseconds(30));
-  EXPECT_FALSE(queue.may_send(begin + milliseconds(59)));
-  EXPECT_TRUE(queue.may_send(begin + milliseconds(60)));
+  ASSERT_TRUE(queue.add({Topic::advisory, 1, 100}, kSent));
+  queue.note_sent(For::strangers, begin, begin + milliseconds(30), true);
+  EXPECT_EQ(queue.next(begin + milliseconds(31)), std::nullopt);
+  ASSERT_TRUE(queue.add({Topic::advisory, 50, 60}, kSent, "reader"));
+  ASSERT_TRUE(queue.add({Topic::advisory, 101, 200}, kSent));
+  EXPECT_EQ(queue.next(begin + milliseconds(31)), For::readers);
+  EXPECT_EQ(queue.take(For::readers, 64), (Range{Topic::advisory, 50, 60}));
+  EXPECT_EQ(queue.next(begin + milliseconds(31)), std::nullopt);
+  EXPECT_EQ(queue.take(For::strangers, 64), (Range{Topic::advisory, 1, 64}));
 }
 
 TEST(ResendQueueTest, PassesOverWhatIsEmpty) {

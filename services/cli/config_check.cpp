@@ -11,6 +11,7 @@
 #include "sealwatch/core/visible_text.hpp"
 #include "sealwatch/message/id_part.hpp"
 #include "services/cli/commands.hpp"
+#include "services/cli/folded_name.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/common/runtime/configuration_loader.hpp"
 #include "services/common/runtime/system_clock.hpp"
@@ -74,6 +75,16 @@ Checked<Configuration> load_and_check(const std::string& file) {
   return configuration;
 }
 
+/// Ids that people take for one another: the same but for capitals, or for how a letter with a mark is written.
+void warn_of_alike(const std::string& what, const std::vector<std::string>& ids, std::vector<std::string>& warnings) {
+  std::map<std::string, std::string> by_look;
+  for (const std::string& id : ids)
+    if (const auto [other, is_new] = by_look.emplace(folded_name(id), id); !is_new && other->second != id)
+      warnings.push_back(what + " '" + id + "' differs from '" + other->second +
+                         "' in capitals, or in how Unicode writes a letter, alone: people take one for the other; "
+                         "give one of them another id");
+}
+
 /// What is allowed and yet leaves the others without work: a service of the chain that is disabled here. And assets that
 /// are alike in the ids of their tests.
 std::vector<std::string> warnings_of(const Configuration& configuration) {
@@ -89,6 +100,11 @@ std::vector<std::string> warnings_of(const Configuration& configuration) {
   for (const AssetConfig& asset : configuration.assets)
     if (const auto [other, is_new] = asset_of_id_part.emplace(id_part(asset.asset_id), asset.asset_id); !is_new)
       warnings.push_back(alike_in_ids(asset.asset_id, other->second));
+  std::vector<std::string> assets, sites;
+  for (const AssetConfig& asset : configuration.assets) assets.push_back(asset.asset_id);
+  for (const SiteConfig& site : configuration.sites) sites.push_back(site.site);
+  warn_of_alike("asset", assets, warnings);
+  warn_of_alike("site", sites, warnings);
   return warnings;
 }
 

@@ -612,6 +612,16 @@ TEST_F(Commands, ConfigurationIsCheckedAsAWhole) {
            write("alike.yaml", "assets: [a_asset.yaml, o_asset.yaml]\nstate_directory: " + folder_.string() + "\n")});
   EXPECT_EQ(alike.status, 0);
   EXPECT_THAT(alike.output, HasSubstr("warning: asset 'Ventil-\u00D6': all but ASCII letters"));
+  (void)write("large_asset.yaml", "asset_id: XT03-\u00C4\n");
+  (void)write("small_asset.yaml", "asset_id: xt03-a\u0308\n");
+  const Finished look_alike = run({"sealwatch", "config", "check", "--config",
+                                   write("look_alike.yaml",
+                                         "assets: [large_asset.yaml, small_asset.yaml]\nsites: [{site: "
+                                         "North}, {site: north}]\nstate_directory: " +
+                                             folder_.string() + "\n")});
+  EXPECT_EQ(look_alike.status, 0);
+  EXPECT_THAT(look_alike.output, ::testing::AllOf(HasSubstr("warning: asset 'xt03-a\u0308' differs from 'XT03-\u00C4'"),
+                                                  HasSubstr("warning: site 'north' differs from 'North'")));
   (void)write("two_lines_asset.yaml", "asset_id: \"XT03\\nMV2\"\n");
   const Finished two_lines =
       run({"sealwatch", "config", "check", "--config",

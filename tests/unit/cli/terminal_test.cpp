@@ -1,5 +1,7 @@
 #include "services/cli/terminal.hpp"
 
+#include "services/cli/folded_name.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,6 +19,21 @@ TEST(Terminal, NumbersKeepSignificantDigits) {
   EXPECT_EQ(number(2.6e13, 3), "2.60e+13");
   EXPECT_EQ(number(1.0e-7, 2), "1.0e-07");
   EXPECT_EQ(percent(0.1234), "12.3 %");
+}
+
+TEST(FoldedName, IsTheSameForNamesThatLookAlike) {
+  for (const auto& [one, other] :
+       std::vector<std::pair<std::string, std::string>>{{"XT03-MV2", "xt03-mv2"},
+                                                        {"Ventil-\u00C4", "ventil-a\u0308"},
+                                                        {"\u1E69", "s\u0307\u0323"},  // both marks, in the other order
+                                                        {"\u03A3\u03C2", "\u03C3\u03C3"},
+                                                        {"\u0416\u0419", "\u0436\u0438\u0306"},
+                                                        {"Stra\u00DFe", "STRASSE"},
+                                                        {"5 \u212B", "5 \u00E5"}})
+    EXPECT_EQ(folded_name(one), folded_name(other)) << one << ", " << other;
+  for (const auto& [one, other] : std::vector<std::pair<std::string, std::string>>{
+           {"A1", "A2"}, {"\u00C4", "A"}, {"A-B", "A_B"}, {"\u4E00", "\u4E01"}, {"\xff", "\xfe"}, {"", "a"}})
+    EXPECT_NE(folded_name(one), folded_name(other)) << one << ", " << other;
 }
 
 TEST(Terminal, WrappedLinesStayWithinTheWidth) {

@@ -232,6 +232,7 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
       if (renew()) continue;
       return SearchEnd::converged;
     }
+    if (promised_ <= rule.bound.decides_nothing * cost_) return SearchEnd::out_of_iterations;
     if (rule.bound.is_out_of_reach(cost_, promised_)) {
       if (renew()) continue;
       return SearchEnd::out_of_reach;

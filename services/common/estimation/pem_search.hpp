@@ -47,6 +47,7 @@ struct PemOptimum {
 struct SearchBound {
   double cost = std::numeric_limits<double>::infinity();
   double optimism = 2.0;
+  double decides_nothing = 0.0;  ///< share of the cost: a search whose linear model promises no more goes no further
   [[nodiscard]] bool is_out_of_reach(double from, double promised) const { return from - optimism * promised > cost; }
 };
 

@@ -13,6 +13,7 @@
 #include "services/common/mismatch/other_shapes.hpp"
 #include "services/common/mismatch/ranking.hpp"
 #include "services/common/mismatch/remainder.hpp"
+#include "services/common/mismatch/replacement.hpp"
 #include "services/common/mismatch/resolution.hpp"
 #include "services/common/mismatch/standard_errors.hpp"
 #include "services/common/mismatch/telling.hpp"
@@ -30,8 +31,7 @@ bool same(const Effect& a, const Effect& b) { return a.law == b.law && a.element
 // The same law at the plant's other elements of that kind (the other chamber, the other valve), with the shape at which the
 // search ended here and the strengths that the linear model gives it there (behind a gear a torque is another): from its
 // own linear step that twin's refit may have ended in a local minimum, and the place would look certain.
-std::vector<std::vector<LawStart>> twins_of(const Trial& best, std::size_t slot, const FittedModel& fewer,
-                                            const Data& data, const ExplainOptions& options) {
+std::vector<Candidate> twins_of(const Trial& best, std::size_t slot) {
   const Effect& effect = best.effects[slot];
   if (effect.law->evaluate == nullptr) return {};
   std::vector<double> found;
@@ -44,33 +44,41 @@ std::vector<std::vector<LawStart>> twins_of(const Trial& best, std::size_t slot,
     if (found.size() == effect.law->parameters.size()) break;  // that form of the law
   }
   if (found.size() != effect.law->parameters.size()) return {};
-  std::vector<Candidate> twins = find_candidates(*fewer.problem.recordings.front().simulation, fewer.asset.physics,
+  std::vector<Candidate> twins = find_candidates(*best.model->problem.recordings.front().simulation, {},
                                                  effect.law->closed_form ? Laws::closed_forms : Laws::listed);
   std::erase_if(twins, [&](const Candidate& candidate) {
-    return candidate.law != effect.law || candidate.element == effect.element;
+    const auto is_it = [&](const Effect& one) { return one.law == candidate.law && one.element == candidate.element; };
+    return candidate.law != effect.law || std::ranges::any_of(best.effects, is_it);
   });
-  if (twins.empty()) return {};
   for (Candidate& twin : twins) twin.grid = {found};
-  const Result<Screening> linear =
-      screen_laws(fewer, twins, data, {.draws = 1, .seed = options.seed, .threads = options.threads});
-  const std::vector<std::size_t> strengths = strengths_of(*effect.law);
-  std::vector<std::vector<LawStart>> starts;
-  for (std::size_t k = 0; k < twins.size(); ++k) {
-    LawStart start{{effect.law, twins[k].element}, found};
-    if (linear)
-      for (const Variant& variant : linear->variants)
-        if (linear->candidates[variant.candidate].element == twins[k].element &&
-            variant.strength.size() == strengths.size() && variant.gain > 0.0)
-          for (std::size_t s = 0; s < strengths.size(); ++s) start.parameters[strengths[s]] = variant.strength[s];
-    starts.push_back({std::move(start)});
-  }
-  return starts;
+  return twins;
 }
 
 // Whether a search that was ended early, as another had come further, may yet come as far as the best, near the noise.
 bool may_come_as_far(const FittedModel& model, const FittedModel& best) {
   const double as_far = best.misfit + kCannotTell * dispersion(best);
   return excess(best) <= kGross && !model.optimum.converged && model.misfit > as_far && could_reach(model) <= as_far;
+}
+
+// Laws in the place of the effect `slot` that the search has not asked there. Near the noise they set out from the best
+// model, each with the strengths at which it does there what the effect did, and what comes nowhere near that on the linear
+// model is left out; in a gross misfit from the model without the effect.
+std::vector<Trial> rivals_of(const Trial& best, std::size_t slot, const Trial& fewer,
+                             const std::vector<LawStart>& asked, const Data& data, const ExplainOptions& options) {
+  const double to_beat = best.model->misfit;
+  std::vector<Candidate> twins = twins_of(best, slot);
+  if (excess(*best.model) <= kGross) {
+    for (Candidate& law : candidates_of(asked, *best.model))
+      if (law.law != best.effects[slot].law) twins.push_back(std::move(law));
+    return refit(best, stand_ins(best, {slot}, std::move(twins), data, options), data, options.threads,
+                 {.in_place_of = {slot}, .sized = true, .to_beat = to_beat});
+  }
+  std::vector<std::vector<LawStart>> starts;
+  for (const LawStart& law : asked) starts.push_back({law});
+  const ScreeningOptions once{.draws = 1, .seed = options.seed, .threads = options.threads};
+  if (const auto linear = twins.empty() ? fail("") : screen_laws(*fewer.model, twins, data, once))
+    for (LawStart& twin : ranked_laws(*linear, twins.size(), true)) starts.push_back({std::move(twin)});
+  return refit(fewer, starts, data, options.threads, {.again_smaller = true, .to_beat = to_beat});
 }
 
 // Trials that differ from `best` in the effect `slot` alone; `fewer`: the model without that effect, where there is one.
@@ -86,24 +94,21 @@ std::vector<Trial> alternatives_of(const Naming& naming, const Trial& best, std:
       found.push_back(may_come_as_far(*trial.model, *best.model) ? polished(trial, data, options.threads) : trial);
   }
   if (!fewer) return found;
-  std::vector<std::vector<LawStart>> starts;
   // A search that began with this law, or with others beside it, has not asked for all of them in its place.
-  const Result<Screening> screening =
+  const Result<Screening> without =
       others.empty() ? naming.first
                      : screen(*fewer->model, data, {.draws = 1, .seed = options.seed, .threads = options.threads});
-  if (!screening) return found;
-  const auto is_known = [&](const Effect& law) {
-    return same(law, best.effects[slot]) ||
-           std::ranges::any_of(found, [&](const Trial& trial) { return same(trial.effects.back(), law); });
-  };
-  for (LawStart& start : ranked_laws(*screening, kAlternatives))
-    if (!is_known(start.effect)) starts.push_back({std::move(start)});
-  const RefitOptions rivals{.again_smaller = true, .to_beat = best.model->misfit};
-  for (Trial& trial : refit(*fewer, starts, data, options.threads, rivals)) found.push_back(std::move(trial));
-  constexpr double kNear = 1.01;  // times the misfit: further off a twin is told apart without its last iterations
-  for (Trial& twin : refit(*fewer, twins_of(best, slot, *fewer->model, data, options), data, options.threads, rivals))
-    found.push_back(twin.model->misfit < kNear * best.model->misfit ? polished(std::move(twin), data, options.threads)
-                                                                    : std::move(twin));
+  if (!without) return found;
+  std::vector<LawStart> asked = ranked_laws(*without, kAlternatives);
+  std::erase_if(asked, [&](const LawStart& law) {
+    const auto is_it = [&](const Trial& trial) { return same(trial.effects.back(), law.effect); };
+    return same(law.effect, best.effects[slot]) || std::ranges::any_of(found, is_it);
+  });
+  for (Trial& trial : rivals_of(best, slot, *fewer, asked, data, options)) {
+    constexpr double kNear = 1.01;  // times the misfit: further off a law is told apart without its last iterations
+    const bool near = trial.model->misfit < kNear * best.model->misfit;
+    found.push_back(near ? polished(std::move(trial), data, options.threads) : std::move(trial));
+  }
   return found;
 }
 

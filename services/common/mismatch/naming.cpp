@@ -5,6 +5,7 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -17,6 +18,7 @@
 #include "services/common/mismatch/plain_laws.hpp"
 #include "services/common/mismatch/ranking.hpp"
 #include "services/common/mismatch/remainder.hpp"
+#include "services/common/mismatch/replacement.hpp"
 #include "services/common/mismatch/tolerance.hpp"
 #include "services/common/mismatch/value_search.hpp"
 #include "services/common/mismatch/verdict.hpp"
@@ -116,14 +118,26 @@ bool promising(const Screening& screening, const FittedModel& model) {
   return most_promised(screening) / excess(model) > kWorthAnother + penalty;
 }
 
+// In a gross misfit, beside laws: whether another may take more than these laws' form may be off by, even if it takes ten
+// times what the linear model promises.
+bool may_be_more_than_form(const Screening& screening, const FittedModel& model, const FittedModel& baseline) {
+  constexpr double kHopeful = 10.0;
+  return excess(model) <= kGross || kHopeful * most_promised(screening) >= kForm * (baseline.misfit - model.misfit);
+}
+
+// What closed forms do beside the trial.
+Result<Screening> screen_closed_forms(const Trial& trial, const Data& data, const ExplainOptions& options) {
+  return screen(*trial.model, data,
+                {.draws = 1, .seed = options.seed, .threads = options.threads, .laws = Laws::closed_forms});
+}
+
 // Closed forms that promise what another law must bring, as starts of refits from the trial.
-std::vector<std::vector<LawStart>> closed_forms_for(const Trial& from, const Data& data,
+std::vector<std::vector<LawStart>> closed_forms_for(const Trial& from, const FittedModel& baseline, const Data& data,
                                                     const ExplainOptions& options) {
-  const ScreeningOptions forms{
-      .draws = 1, .seed = options.seed, .threads = options.threads, .laws = Laws::closed_forms};
   std::vector<std::vector<LawStart>> starts;
-  const auto screening = screen(*from.model, data, forms);
+  const auto screening = screen_closed_forms(from, data, options);
   if (!screening || !promising(*screening, *from.model)) return starts;
+  if (!from.effects.empty() && !may_be_more_than_form(*screening, *from.model, baseline)) return starts;
   for (LawStart& start : ranked_laws(*screening, kClosedForms)) starts.push_back({std::move(start)});
   return starts;
 }
@@ -136,17 +150,32 @@ bool leave_most(const std::vector<Trial>& trials, const FittedModel& model) {
   });
 }
 
+// Closed forms in place of all laws found, from where these stand.
+std::vector<Trial> closed_forms_in_place(const Naming& naming, const std::vector<std::vector<LawStart>>& forms,
+                                         const Data& data, const ExplainOptions& options) {
+  std::vector<std::size_t> all(naming.best.effects.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  std::vector<LawStart> asked;
+  for (const std::vector<LawStart>& form : forms) asked.push_back(form.front());
+  const auto starts = stand_ins(naming.best, all, candidates_of(asked, *naming.best.model), data, options);
+  return refit(naming.best, starts, data, options.threads,
+               {.in_place_of = all, .sized = true, .to_beat = naming.best.model->misfit});
+}
+
 // Where listed laws leave something beyond the noise: closed forms in place of the laws found, and beside them.
 void try_closed_forms(Naming& naming, const Data& data, const ExplainOptions& options) {
-  std::vector<Trial> trials;
-  for (const Trial& from : {Trial{{}, naming.baseline}, naming.best}) {
-    if (static_cast<int>(from.effects.size()) == options.maximum_laws) continue;
-    if (!from.effects.empty() && leaves_its_form(naming)) continue;
-    const auto starts = closed_forms_for(from, data, options);
-    for (Trial& trial : refit(from, starts, data, options.threads, {.to_beat = naming.best.model->misfit}))
+  if (options.maximum_laws == 0) return;
+  const double to_beat = naming.best.model->misfit;
+  const Trial nothing{{}, naming.baseline};
+  const auto instead = closed_forms_for(nothing, *naming.baseline, data, options);
+  const bool from_laws = !naming.best.effects.empty() && excess(*naming.best.model) <= kGross;
+  std::vector<Trial> trials = from_laws ? closed_forms_in_place(naming, instead, data, options)
+                                        : refit(nothing, instead, data, options.threads, {.to_beat = to_beat});
+  const auto laws = static_cast<int>(naming.best.effects.size());
+  if (laws > 0 && laws < options.maximum_laws && !leaves_its_form(naming))
+    for (Trial& trial : refit(naming.best, closed_forms_for(naming.best, *naming.baseline, data, options), data,
+                              options.threads, {.to_beat = to_beat}))
       trials.push_back(std::move(trial));
-    if (naming.best.effects.empty()) break;
-  }
   naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
   const double phi = smallest_dispersion(trials, *naming.best.model);
   const Trial* best = best_of(trials, phi);
@@ -333,8 +362,7 @@ std::vector<std::vector<LawStart>> also_from(const Trial& given, std::vector<std
 // Where none of them does, sensors that are not exact; else the other laws, then pairs. Sensors that promise more than
 // the laws come first, and only laws that could do better are refitted. A parameter of which each recording has its own
 // competes with all of them. Beside a law that leaves no more than its exact form sensors alone are asked.
-// `to_beat`: a misfit that laws have to come to.
-std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptions& options, double to_beat) {
+std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptions& options) {
   const std::size_t level = naming.best.effects.size();
   const bool gross = excess(*naming.best.model) > kGross;
   const Screening asked = causes_in(naming.last, *naming.best.model);
@@ -345,7 +373,7 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
     for (LawStart& start : second_starts(asked)) singles.push_back({std::move(start)});
   std::vector<Trial> trials;
   const auto refit_from = [&](const Trial& from, const std::vector<std::vector<LawStart>>& starts) {
-    RefitOptions refits{.to_beat = to_beat};
+    RefitOptions refits;
     for (const Trial& trial : trials) refits.to_beat = std::min(refits.to_beat, trial.model->misfit);
     for (Trial& trial : refit(from, starts, data, options.threads, refits)) trials.push_back(std::move(trial));
   };
@@ -366,6 +394,10 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
     static_cast<void>(are_inexact());
     return trials;
   }
+  if (level > 0 && !may_be_more_than_form(asked, *naming.best.model, *naming.baseline)) {
+    differing.ask_beside({});
+    return with_differing({});
+  }
   differing.ask_before(asked);
   const std::optional<double> least_gain = sensors.least_gain(asked);
   if (least_gain && by_gain(asked).front()->gain < *least_gain && are_inexact()) return trials;
@@ -381,7 +413,7 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
     if (const auto given = with_given_values(naming.best, data))
       refit_from(*given, also_from(*given, singles, data, options));
   if (level == 0 && leave_most(with_differing(trials), *naming.best.model))
-    refit_also(closed_forms_for(naming.best, data, options));
+    refit_also(closed_forms_for(naming.best, *naming.baseline, data, options));
   differing.ask_beside(trials);
   if (least_gain && are_inexact()) return trials;
   if (!one_does()) {
@@ -392,6 +424,23 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
   }
   naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
   return with_differing(std::move(trials));
+}
+
+// Single laws that may do as well as a value of the asset file that ends a gross misfit.
+std::vector<Trial> laws_in_place_of(const ValueSwap& value, Naming& naming, const Data& data,
+                                    const ExplainOptions& options) {
+  const FittedModel& with_value = *value.with.model;
+  const auto beside = look(naming, value.with.model, data, options);
+  if (!beside) return try_laws(naming, data, options);
+  const Replacement replacement(with_value, value.value);
+  std::vector<std::vector<LawStart>> starts;
+  for (LawStart& start : ranked_laws(naming.last, kSingles))
+    if (const auto stand_in = replacement.stand_in(*beside, start.effect);
+        !stand_in || replacement.may_do_as_well(*stand_in))
+      starts.push_back({std::move(start)});
+  std::vector<Trial> trials = refit(naming.best, starts, data, options.threads, {.to_beat = with_value.misfit});
+  naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
+  return trials;
 }
 
 // Whether one of the laws found is a sensor within its tolerance: that is no fault, and the others are to be asked beside
@@ -496,15 +545,14 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     const bool gross = excess(*naming.best.model) > kGross;
     if (progress) progress("trying laws", 0.3 + 0.15 * static_cast<double>(level));
     const std::optional<ValueSwap> value = value_that_ends_it(naming, data, options.threads);
-    constexpr double kNothing = std::numeric_limits<double>::infinity();
-    const double to_beat = value ? value->with.model->misfit : kNothing;
-    std::vector<Trial> trials = try_laws(naming, data, options, to_beat);
+    std::vector<Trial> trials =
+        value ? laws_in_place_of(*value, naming, data, options) : try_laws(naming, data, options);
     if (naming.sensors_are_inexact) return naming;
     const Trial* best = best_of(trials, smallest_dispersion(trials, *naming.best.model));
     if (value && (best == nullptr || criterion_behind(*value->with.model, *best->model) < -kCannotTell)) {
       if (auto beside = search_beside(naming, *value, data, options, progress)) return std::move(*beside);
       if (!in_time("what is beside a value of the asset file that explains more than any law")) break;
-      trials = try_laws(naming, data, options, kNothing);  // some were cut beside the value
+      trials = try_laws(naming, data, options);
       if (naming.sensors_are_inexact) return naming;
     }
     const double phi = smallest_dispersion(trials, *naming.best.model);

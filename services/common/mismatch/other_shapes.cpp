@@ -9,6 +9,7 @@
 #include "services/common/mismatch/plain_laws.hpp"
 #include "services/common/mismatch/ranking.hpp"
 #include "services/common/mismatch/remainder.hpp"
+#include "services/common/mismatch/replacement.hpp"
 #include "services/common/mismatch/telling.hpp"
 
 namespace sealwatch::mismatch {
@@ -119,6 +120,17 @@ bool is_at_the_noise(const Naming& naming, const ExplainOptions& options) {
   constexpr double kLeft = 1.1;
   const FittedModel& model = *naming.best.model;
   return model.misfit < kLeft * model.residuals && !differs(naming.last.p_value, model, options.false_alarm_rate);
+}
+
+// Laws that would miss by far more in the place of an effect.
+void leave_out_far_off(std::vector<LawStart>& asked, const Trial& best, std::size_t slot, const Data& data,
+                       const ExplainOptions& options) {
+  const auto near = stand_ins(best, {slot}, candidates_of(asked, *best.model), data, options);
+  std::erase_if(asked, [&](const LawStart& law) {
+    return std::ranges::none_of(near, [&](const std::vector<LawStart>& one) {
+      return one.front().effect.law == law.effect.law && one.front().effect.element == law.effect.element;
+    });
+  });
 }
 
 std::string laws_in_words(const std::vector<Effect>& effects) {
@@ -255,10 +267,14 @@ void another_law_for_each(Naming& naming, const Data& data, const ExplainOptions
     naming.trials.push_back(*fewer);
     const auto left = screen(*fewer->model, data, {.draws = 1, .seed = options.seed, .threads = options.threads});
     if (!left) continue;
-    std::vector<std::vector<LawStart>> starts;
+    std::vector<LawStart> asked;
     for (LawStart& start : ranked_laws(causes_in(*left, *fewer->model), kOtherLaws + kSingleLaws))
-      if (start.effect.element != naming.best.effects[slot].element && starts.size() < kOtherLaws)
-        starts.push_back({std::move(start)});
+      if (start.effect.element != naming.best.effects[slot].element && asked.size() < kOtherLaws)
+        asked.push_back(std::move(start));
+    const bool near = excess(*naming.best.model) <= kGross;  // there the linear model tells what comes nowhere near
+    if (near) leave_out_far_off(asked, naming.best, slot, data, options);
+    std::vector<std::vector<LawStart>> starts;
+    for (LawStart& start : asked) starts.push_back({std::move(start)});
     std::vector<Trial> others = refit(*fewer, starts, data, options.threads, {.to_beat = naming.best.model->misfit});
     for (Trial& trial : causes_among(std::move(others), *fewer)) trials.push_back(std::move(trial));
   }

@@ -73,6 +73,11 @@ std::vector<const Variant*> best_of_each(const Screening& screening) {
 
 }  // namespace
 
+LawStart start_with(const Screening& screening, Variant variant, std::vector<double> strengths) {
+  variant.strength = std::move(strengths);
+  return start_of(screening, variant, true);
+}
+
 std::vector<const Variant*> by_gain(const Screening& screening) {
   std::vector<const Variant*> order;
   for (const Variant& variant : screening.variants)

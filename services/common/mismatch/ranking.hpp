@@ -8,6 +8,9 @@
 
 namespace sealwatch::mismatch {
 
+/// The law at that point of its grid, of these strengths (in its units).
+[[nodiscard]] LawStart start_with(const Screening& screening, Variant variant, std::vector<double> strengths);
+
 /// All variants that promise something, by their gain.
 [[nodiscard]] std::vector<const Variant*> by_gain(const Screening& screening);
 

@@ -24,9 +24,10 @@ constexpr std::size_t kAhead = 2;        // refits that come first: what they co
 // In a gross misfit a refit does not go on that is further off than so many times the best, or than so many times what
 // its linear model promises.
 constexpr double kHopeful = 10.0;
-constexpr double kNearer = 0.5;   // nor does any where a round leaves more than this share of the distance to the best
-constexpr double kFar = 100.0;    // times the noise: a model that misses by more says nothing of sizes
-constexpr double kSmaller = 0.1;  // strength with which one starts again that set out too far
+constexpr double kNearer = 0.5;  // nor does any where a round leaves more than this share of the distance to the best
+constexpr double kFar = 100.0;   // times the noise: a model that misses by more says nothing of sizes
+constexpr double kDecidesNothing = 0.01;  // of the misfit: in a gross one a first round tells laws apart by multiples
+constexpr double kSmaller = 0.1;          // strength with which one starts again that set out too far
 
 // Whether a strength of the laws added last has come to an end of its range: nothing depends on their shapes there.
 bool came_to_an_end(const FittedModel& model, const std::vector<LawStart>& added) {
@@ -127,7 +128,9 @@ class GoesOn {
     return {.cost = 0.5 * limit_, .optimism = gross_ ? kHopeful : kOptimistic};
   }
   /// Of searches with known values as they are known: their tolerances come later.
-  [[nodiscard]] SearchBound bound_of_first() const { return {.cost = 0.5 * kHopeful * best_, .optimism = kHopeful}; }
+  [[nodiscard]] SearchBound bound_of_first() const {
+    return {.cost = 0.5 * kHopeful * best_, .optimism = kHopeful, .decides_nothing = kDecidesNothing};
+  }
 
   [[nodiscard]] bool at_first(const FittedModel& model) const { return may_come_near(model) && is_hopeful(model); }
   [[nodiscard]] bool is_hopeful(const FittedModel& model) const { return model.misfit <= kHopeful * best_; }
@@ -234,8 +237,9 @@ class Refits {
     // In a gross misfit the linear model of a free run says too little of what changes beside a law.
     const bool tells_little = gross_ && data_.held_within_s == 0.0;
     const PemPoint beside = tells_little ? PemPoint{} : beside_all(added, share);
+    const bool has_sizes = options_.in_place_of.empty() || options_.sized;
     Result<FittedModel> model =
-        options_.in_place_of.empty() ? set_out(beside) : sizes_first(asset, added, first_data(), *from_.model, bound_);
+        has_sizes ? set_out(beside) : sizes_first(asset, added, first_data(), *from_.model, bound_);
     if (!model && !beside.own.empty()) model = set_out({});  // where the linear model leads, nothing can be simulated
     if (model) refit.model = std::make_shared<FittedModel>(std::move(*model));
     return refit;

@@ -42,6 +42,9 @@ struct AsKnown {
 struct RefitOptions {
   /// Indices of effects of the model set out from that are taken out first, ascending.
   std::vector<std::size_t> in_place_of = {};
+  /// The starts have the strengths at which they do what these effects did (replacement.hpp). Else strengths come first,
+  /// and shapes are held until they fit.
+  bool sized = false;
   /// A refit that ends worse than what it set out from starts again with a tenth of its strength (for alternatives; a
   /// search takes the law that is easier to find).
   bool again_smaller = false;

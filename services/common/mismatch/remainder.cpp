@@ -18,7 +18,6 @@ namespace sealwatch::mismatch {
 namespace {
 
 constexpr std::size_t kAnywhere = 3;
-constexpr double kForm = 2e-2;         // of the largest law's gain
 constexpr double kNothingElse = 2e-3;  // of what the first law took: no other is tried
 
 double gain_of(const FoundEffect& effect) { return -effect.delta_bic; }

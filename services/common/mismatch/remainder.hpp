@@ -21,6 +21,9 @@
 
 namespace sealwatch::mismatch {
 
+/// Of the largest law's gain.
+inline constexpr double kForm = 2e-2;
+
 struct Remainder {
   LawAt law;
   std::string sentence;

@@ -1,5 +1,6 @@
 #include "services/common/mismatch/windows.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <random>

@@ -185,7 +185,7 @@ TEST_F(RunnerTest, ServesALongRequestInTurnsWhileItGoesOnReceiving) {
   EXPECT_TRUE(listener_.bus().publish(ResendRequest{process->journal().writer_id(), "test_features", 1, 100, "l"}));
   step(*process, 1);
   EXPECT_THAT(listener_.sequences(Topic::test_features), SizeIs(Ge(16)));
-  EXPECT_TRUE(step_until(all_came, [&] { step(*process, 1); })) << "it rests for as long as it sent, no longer";
+  EXPECT_TRUE(step_until(all_came, [&] { step(*process, 1); })) << "it rests, and goes on";
   auto sequences = listener_.sequences(Topic::test_features);
   std::erase(sequences, 100U);
   EXPECT_THAT(sequences, SizeIs(99)) << "and none but the latest twice";

@@ -89,11 +89,12 @@ class Writer {
       return taken;
     };
     outbox_.send(now, attempt);
-    const auto range = resends_.may_send(now) ? resends_.take(64) : std::nullopt;
+    const auto whom = resends_.next(now);
+    const auto range = whom ? resends_.take(*whom, 64) : std::nullopt;
     if (!range || outbox_.pauses(range->topic, now)) return;
     for (std::uint64_t k = range->first; k <= range->last; ++k)
       if (!attempt(message_of(range->topic, journal_[range->topic][k - 1], k))) break;
-    resends_.note_sent(now, now + std::chrono::milliseconds(3));
+    resends_.note_sent(*whom, now, now + std::chrono::milliseconds(3), true);
   }
   [[nodiscard]] ServiceStatus status() const {
     ServiceStatus status;

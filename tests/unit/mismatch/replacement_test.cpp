@@ -38,6 +38,7 @@ TEST(Replacement, OfALawByItselfLeavesNothing) {
   const double fitted = leaking.whole.model->asset.physics.front().parameters.at("G").value;
   EXPECT_NEAR(itself->start.parameters.front(), fitted, 0.01 * fitted);
   EXPECT_LT(itself->rise, 0.01 * leaking.whole.model->misfit);
+  for (const double change : itself->start.beside.shared) EXPECT_NEAR(change, 0.0, 1e-3) << "of the other unknowns";
   EXPECT_TRUE(Replacement(leaking.whole, {0}).may_do_as_well(*itself));
 }
 

@@ -22,14 +22,23 @@ PemPoint beside(const Screening& screening, const Variant& variant, std::span<co
                   .own = {}};
   for (const Eigen::MatrixXd& own : screening.own_like_law)
     change.own.emplace_back(static_cast<std::size_t>(own.rows()), 0.0);
-  for (std::size_t k = 0; k < strengths.size(); ++k) {
-    const Eigen::Index column = variant.columns[k];
-    const double units = strengths[k] / screening.unit[static_cast<std::size_t>(column)];
+  const auto give_back = [&](double units, const Eigen::MatrixXd& shared_like,
+                             const std::vector<Eigen::MatrixXd>& own_like, Eigen::Index column) {
     const auto take = [&](const Eigen::MatrixXd& like, std::vector<double>& from) {
       Eigen::Map<Eigen::VectorXd>(from.data(), std::ssize(from)) -= units * like.col(column);
     };
-    take(screening.shared_like_law, change.shared);
-    for (std::size_t r = 0; r < change.own.size(); ++r) take(screening.own_like_law[r], change.own[r]);
+    take(shared_like, change.shared);
+    for (std::size_t r = 0; r < change.own.size(); ++r) take(own_like[r], change.own[r]);
+  };
+  for (std::size_t k = 0; k < strengths.size(); ++k) {
+    const Eigen::Index column = variant.columns[k];
+    give_back(strengths[k] / screening.unit[static_cast<std::size_t>(column)], screening.shared_like_law,
+              screening.own_like_law, column);
+  }
+  const HeldUnknowns& held = screening.held;
+  for (std::size_t k = 0; k < variant.back.size(); ++k) {
+    give_back(variant.back[k], held.shared_like, held.own_like, static_cast<Eigen::Index>(k));
+    change.shared[static_cast<std::size_t>(held.unknown[k])] += variant.back[k];
   }
   return change;
 }
@@ -75,6 +84,7 @@ std::vector<const Variant*> best_of_each(const Screening& screening) {
 
 LawStart start_with(const Screening& screening, Variant variant, std::vector<double> strengths) {
   variant.strength = std::move(strengths);
+  variant.back.clear();
   return start_of(screening, variant, true);
 }
 

@@ -78,11 +78,11 @@ void for_each_entry(const std::vector<Variant>& variants, const F& f) {
       for (const Eigen::Index k : variant.columns) f(j, k);
 }
 
-// What is held at a bound does not swallow anything.
-void leave_out_held(const FittedModel& model, RowMatrix& free) {
+std::vector<Eigen::Index> held_unknowns(const FittedModel& model) {
+  std::vector<Eigen::Index> held;
   for (std::size_t k = 0; k < model.problem.shared.size(); ++k)
-    if (at_bound(model.problem.shared[k], model.optimum.point.shared[k]))
-      free.col(static_cast<Eigen::Index>(k)).setZero();
+    if (at_bound(model.problem.shared[k], model.optimum.point.shared[k])) held.push_back(static_cast<Eigen::Index>(k));
+  return held;
 }
 
 // Z becomes Q; R.
@@ -98,10 +98,10 @@ Eigen::MatrixXd orthonormalise(RowMatrix& z) {
 }
 
 // The products of one recording, block by block of time.
-void multiply(const Pass& pass, const RowMatrix& q, const std::vector<Eigen::Index>& place, Eigen::Index block_rows,
-              const std::vector<Variant>& variants, Products& products) {
+void multiply(const Pass& pass, const RowMatrix& q, const RowMatrix& held, const std::vector<Eigen::Index>& place,
+              Eigen::Index block_rows, const std::vector<Variant>& variants, Products& products) {
   constexpr Eigen::Index kAtOnce = 128;  // rows: their panels stay in the nearest cache
-  const Eigen::Index laws = static_cast<Eigen::Index>(place.size()) - q.cols() - 1, rows = q.rows(),
+  const Eigen::Index laws = static_cast<Eigen::Index>(place.size()) - q.cols() - 1 - held.cols(), rows = q.rows(),
                      blocks = std::max<Eigen::Index>(1, rows / block_rows), size = products.all.rows();
   products.variant.resize(blocks, entries_of(variants));
   dense::RowBlock together(std::ssize(place), kAtOnce);
@@ -113,6 +113,7 @@ void multiply(const Pass& pass, const RowMatrix& q, const std::vector<Eigen::Ind
       std::copy_n(q.data() + at * q.cols(), q.cols(), row.data());
       row[static_cast<std::size_t>(q.cols())] = pass.residual(at);
       pass.law_row(at, laws, row.data() + q.cols() + 1);
+      std::copy_n(held.data() + at * held.cols(), held.cols(), row.data() + q.cols() + 1 + laws);
       together.add(row.data());
       if (!together.full() && at + 1 < end) continue;
       together.add_gram_to(gram);
@@ -139,16 +140,20 @@ Result<Products> products_of(const FittedModel& model, std::size_t recording, co
   products.not_finite = pass->not_finite;
   if (!products.not_finite.empty()) return products;
   RowMatrix q = std::move(pass->free);
-  leave_out_held(model, q);
+  const std::vector<Eigen::Index> at_end = held_unknowns(model);
+  const RowMatrix held = q(Eigen::all, at_end);
+  q(Eigen::all, at_end).setZero();  // what is held swallows nothing
   const Eigen::MatrixXd r = orthonormalise(q);
+  const Eigen::Index first_held = q.cols() + 1 + layout.size, size = first_held + held.cols();
   products.free = q.cols();
-  products.all = Eigen::MatrixXd::Zero(q.cols() + 1 + layout.size, q.cols() + 1 + layout.size);
+  products.all = Eigen::MatrixXd::Zero(size, size);
   products.shared_in_q = r.leftCols(shared);
   products.own_in_q = r.rightCols(q.cols() - shared);
   std::vector<Eigen::Index> place;
   for (Eigen::Index k = 0; k <= q.cols(); ++k) place.push_back(k);
   for (const auto& of : layout.of_pass) place.push_back(q.cols() + 1 + (of.size() == 1 ? of.front() : of[recording]));
-  multiply(*pass, q, place, rows_per_block(model.problem.recordings[recording].time_s, pass->channels, block_s),
+  for (Eigen::Index k = first_held; k < size; ++k) place.push_back(k);
+  multiply(*pass, q, held, place, rows_per_block(model.problem.recordings[recording].time_s, pass->channels, block_s),
            variants, products);
   return products;
 }
@@ -192,7 +197,8 @@ Eigen::MatrixXd own_like_law(const Products& products, const Eigen::MatrixXd& co
   return own.rightCols(own.cols() - 1);
 }
 
-// What is known beforehand of shared unknowns, as rows of their own, the residual last: no law acts on them.
+// What is known beforehand of shared unknowns, as rows of their own, the residual last: no law acts on them. Columns are
+// what the simulation changes by, residuals what it misses by, as those of the recordings (Pass).
 RowMatrix known_beforehand(const FittedModel& model) {
   const std::vector<Unknown>& unknowns = model.problem.shared;
   const auto shared = static_cast<Eigen::Index>(unknowns.size());
@@ -200,7 +206,7 @@ RowMatrix known_beforehand(const FittedModel& model) {
   Eigen::Index row = 0;
   for (std::size_t k = 0; k < unknowns.size(); ++k) {
     if (!unknowns[k].is_known()) continue;
-    known(row, static_cast<Eigen::Index>(k)) = -1.0 / unknowns[k].prior_std;
+    known(row, static_cast<Eigen::Index>(k)) = 1.0 / unknowns[k].prior_std;
     known(row++, shared) = unknowns[k].prior_residual(model.optimum.point.shared[k]);
   }
   return known;
@@ -317,7 +323,7 @@ struct Projected {
 Projected project(const FittedModel& model, Parts& parts, const Asked& asked, const Screening& screening, int threads) {
   const RowMatrix known = known_beforehand(model);
   const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
-  const Eigen::Index size = asked.layout.size;
+  const Eigen::Index size = asked.layout.size + std::ssize(held_unknowns(model));
   Projected projected{
       .all = {.gram = dense::gram_of_rows(known.leftCols(shared)), .cross = Eigen::MatrixXd::Zero(shared, size + 1)},
       .coefficients = Eigen::MatrixXd::Zero(shared, size + 1),
@@ -352,10 +358,35 @@ Eigen::MatrixXd feigned_scores(const FittedModel& model, const Data& data, const
     Parts parts = products_of_all(*feigned, screening, asked, options);
     const auto failed = [](const auto& part) { return !*part || !(*part)->not_finite.empty(); };
     if (std::ranges::any_of(parts, failed)) continue;
-    sum += stacked(project(*feigned, parts, asked, screening, options.threads).left, &Left::sums);
+    sum += stacked(project(*feigned, parts, asked, screening, options.threads).left, &Left::sums)
+               .leftCols(asked.layout.size);
     count += 1.0;
   }
   return count > 0.0 ? sum / count : sum;
+}
+
+// The held unknowns out of the products, where they stand behind the laws; `gram`: of both.
+HeldUnknowns held_beside(const FittedModel& model, const Projected& projected, const Parts& parts,
+                         const Eigen::MatrixXd& gram, Eigen::Index laws) {
+  HeldUnknowns held{.unknown = held_unknowns(model), .least = {}, .most = {}, .gram = {}, .across = {}, .gradient = {}};
+  const Eigen::Index count = std::ssize(held.unknown);
+  held.least = held.most = Eigen::VectorXd::Zero(count);
+  held.gram = gram.bottomRightCorner(count, count);
+  held.across = gram.bottomLeftCorner(count, laws);
+  held.gradient = stacked(projected.left, &Left::sums).rightCols(count).colwise().sum();
+  held.shared_like = projected.coefficients.rightCols(count);
+  for (const auto& part : parts) held.own_like.push_back(own_like_law(**part, projected.coefficients).rightCols(count));
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const auto place = static_cast<std::size_t>(held.unknown[static_cast<std::size_t>(k)]);
+    const Unknown& unknown = model.problem.shared[place];
+    const double at = model.optimum.point.shared[place];
+    held.least(k) = std::min(0.0, unknown.to_unknown(unknown.min) - at);
+    held.most(k) = std::max(0.0, unknown.to_unknown(unknown.max) - at);
+    if (!unknown.is_known()) continue;
+    held.gram(k, k) += 1.0 / (unknown.prior_std * unknown.prior_std);
+    held.gradient(k) += unknown.prior_residual(at) / unknown.prior_std;
+  }
+  return held;
 }
 
 Result<Screening> screen_candidates(const FittedModel& model, const Data& data, const ScreeningOptions& options,
@@ -377,18 +408,21 @@ Result<Screening> screen_candidates(const FittedModel& model, const Data& data, 
 
   const Projected projected = project(model, parts, asked, screening, options.threads);
   const Eigen::Index size = asked.layout.size;
-  screening.shared_like_law = projected.coefficients.rightCols(size);
-  for (const auto& part : parts) screening.own_like_law.push_back(own_like_law(**part, projected.coefficients));
-  screening.gram = Eigen::MatrixXd::Zero(size, size);
-  for (const Left& part : projected.left) screening.gram += part.gram;
-  screening.gram.triangularView<Eigen::StrictlyUpper>() = screening.gram.transpose();
-  screening.block_scores = stacked(projected.left, &Left::sums);
+  screening.shared_like_law = projected.coefficients.middleCols(1, size);
+  for (const auto& part : parts)
+    screening.own_like_law.push_back(own_like_law(**part, projected.coefficients).leftCols(size));
+  Eigen::MatrixXd gram = projected.left.front().gram;
+  for (std::size_t k = 1; k < projected.left.size(); ++k) gram += projected.left[k].gram;
+  gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+  screening.gram = gram.topLeftCorner(size, size);
+  screening.held = held_beside(model, projected, parts, gram, size);
+  screening.block_scores = stacked(projected.left, &Left::sums).leftCols(size);
   screening.block_scores -= feigned_scores(model, data, options, screening, asked);
-  leave_out_rounding(screening, projected.raw_norm);
+  leave_out_rounding(screening, projected.raw_norm.head(size));
   screening.gradient = screening.block_scores.colwise().sum();
   if (projected.all.gram.rows() > 0)
-    find_leakage_shifts(screening, model, projected.all.gram, projected.all.cross.rightCols(size));
-  evaluate(screening, projected.raw_norm, stacked(projected.left, &Left::grams),
+    find_leakage_shifts(screening, model, projected.all.gram, projected.all.cross.middleCols(1, size));
+  evaluate(screening, projected.raw_norm.head(size), stacked(projected.left, &Left::grams),
            resolution_of(data, model.problem.recordings.front().simulation->plant()));
   calibrate(screening, options);
   return screening;

@@ -8,7 +8,8 @@
 //                                     V here from U_b - G_b k: without the law's own best share k = G_I^-1 g_I
 //   against an interval: with |k| <= k_0 = resolution x significant size as the null, one strength counts with
 //                        (|g| - k_0 G)^2 / V where that is positive, several with 0 where all stay within
-//   gain of a law, if added           d = g_I' G_I^-1 g_I                (drop of the whitened misfit, linearised)
+//   gain of a law, if added           d = max 2 g'k - k'G k              (drop of the whitened misfit, linearised)
+//                                     over its strengths and, within their ranges, unknowns that are held at an end
 //   absorbed share                    a = 1 - |s~|^2/|s|^2
 //   minimum detectable strength       sqrt(lambda / |s~|^2), lambda = 27 (80 % power at 1 % over the whole catalogue)
 //
@@ -37,12 +38,24 @@ struct Variant {
   std::vector<Eigen::Index> columns;  ///< of the screening's matrices, one for each strength
   double score = 0.0;                 ///< T
   double p_value = 1.0;               ///< of T alone
-  double gain = 0.0;                  ///< d with strengths kept within their bounds
+  double gain = 0.0;                  ///< d with strengths kept within their bounds, held unknowns coming back
   std::vector<double> strength;       ///< linear estimate of each strength, in the law's unit
+  std::vector<double> back = {};      ///< by how much each held unknown comes back beside it
   bool physical = true;               ///< the unconstrained estimate is within its bounds
   double absorbed = 0.0;
   double minimum_detectable = 0.0;  ///< of the first strength, in the law's unit
   double leakage_shift = 0.0;       ///< relative change of R_CL that would swallow a law of that size
+};
+
+/// Shared unknowns that the fit keeps at an end of their range. Like a law, with columns of their own: beside a law that
+/// does what they were driven there for, they come back.
+struct HeldUnknowns {
+  std::vector<Eigen::Index> unknown;  ///< of the shared ones
+  Eigen::VectorXd least, most;        ///< change that leaves each within its range
+  Eigen::MatrixXd gram, across;       ///< of their projected columns, and of these with the laws'
+  Eigen::VectorXd gradient;           ///< what is known beforehand included, as in the gram
+  Eigen::MatrixXd shared_like = {};   ///< as shared_like_law
+  std::vector<Eigen::MatrixXd> own_like = {};
 };
 
 struct Screening {
@@ -57,6 +70,7 @@ struct Screening {
   /// columns, and own x columns per recording.
   Eigen::MatrixXd shared_like_law = {};
   std::vector<Eigen::MatrixXd> own_like_law = {};
+  HeldUnknowns held = {};
   double p_value = 1.0;           ///< that there is nothing but noise
   double effective_number = 1.0;  ///< of independent laws in the catalogue, points passed over included
   std::size_t best = 0;           ///< variant with the largest score

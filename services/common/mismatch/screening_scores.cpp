@@ -8,6 +8,7 @@
 
 #include "sealwatch/signal/statistics.hpp"
 #include "services/common/dense/dense.hpp"
+#include "services/common/estimation/minimum_in_box.hpp"
 #include "services/common/mismatch/linear_algebra.hpp"
 
 namespace sealwatch::mismatch {
@@ -40,6 +41,36 @@ Eigen::VectorXd resolution_of(const Screening& screening, const Variant& variant
     least(k) = bias ? resolution.share : resolution.of(strength) / unit;
   }
   return least;
+}
+
+// The law together with the unknowns that are held at an end of their range, which come back as far as they may.
+struct Beside {
+  double gain = 0.0;
+  Eigen::VectorXd strength, back;
+};
+
+Beside step_beside_held(const Screening& screening, const std::vector<Eigen::Index>& columns,
+                        const std::vector<bool>& positive) {
+  constexpr double kEnd = std::numeric_limits<double>::infinity();
+  const HeldUnknowns& held = screening.held;
+  if (held.unknown.empty()) {
+    LinearStep step =
+        bounded_step(submatrix(screening.gram, columns), subvector(screening.gradient, columns), positive);
+    return {.gain = step.gain, .strength = std::move(step.strength), .back = {}};
+  }
+  const Eigen::Index laws = std::ssize(columns), all = laws + std::ssize(held.unknown);
+  Eigen::MatrixXd gram(all, all);
+  Eigen::VectorXd gradient(all), least(all), most(all);
+  const Eigen::MatrixXd across = held.across(Eigen::all, columns);
+  gram << submatrix(screening.gram, columns), across.transpose(), across, held.gram;
+  gradient << subvector(screening.gradient, columns), held.gradient;
+  for (Eigen::Index k = 0; k < laws; ++k) least(k) = positive[static_cast<std::size_t>(k)] ? 0.0 : -kEnd;
+  least.tail(all - laws) = held.least;
+  most << Eigen::VectorXd::Constant(laws, kEnd), held.most;
+  const Eigen::VectorXd step = minimum_in_box(gram, -gradient, least, most, kRidge);
+  return {.gain = 2.0 * gradient.dot(step) - step.dot(gram * step),
+          .strength = step.head(laws),
+          .back = step.tail(all - laws)};
 }
 
 // V: covariance of the blocks' scores once the law's own best share is taken off them. An effect that acts in few
@@ -87,11 +118,13 @@ void evaluate(Screening& screening, const Eigen::VectorXd& raw_norm, const Eigen
     const bool possible = step.free && step.strength.cwiseAbs().maxCoeff() < kAbsurd;
     if ((resolution.share > kMeasured && !possible) || !std::isfinite(variant.score)) variant.score = 0.0;
     variant.p_value = signal::chi_squared_tail(variant.score, static_cast<double>(variant.columns.size()));
-    variant.gain = std::isfinite(step.gain) ? step.gain : 0.0;  // columns of zeros: the law cannot act here
+    const Beside beside = step_beside_held(screening, variant.columns, sign_bounds(screening, variant));
+    variant.gain = std::isfinite(beside.gain) ? beside.gain : 0.0;  // columns of zeros: the law cannot act here
+    variant.back.assign(beside.back.begin(), beside.back.end());
     variant.physical = step.free;
-    for (Eigen::Index k = 0; k < step.strength.size(); ++k)
+    for (Eigen::Index k = 0; k < beside.strength.size(); ++k)
       variant.strength.push_back(
-          step.strength(k) * screening.unit[static_cast<std::size_t>(variant.columns[static_cast<std::size_t>(k)])]);
+          beside.strength(k) * screening.unit[static_cast<std::size_t>(variant.columns[static_cast<std::size_t>(k)])]);
     const Eigen::Index first = variant.columns.front();
     variant.absorbed = raw_norm(first) > 0.0 ? 1.0 - gram(0, 0) / raw_norm(first) : 1.0;
     variant.minimum_detectable = gram(0, 0) > 0.0 ? (std::sqrt(kDetectable / gram(0, 0)) + least(0)) *
@@ -158,7 +191,7 @@ double pair_gain(const Screening& screening, const Variant& a, const Variant& b)
   std::vector<bool> positive = sign_bounds(screening, a);
   const std::vector<bool> other = sign_bounds(screening, b);
   positive.insert(positive.end(), other.begin(), other.end());
-  return bounded_step(submatrix(screening.gram, columns), subvector(screening.gradient, columns), positive).gain;
+  return step_beside_held(screening, columns, positive).gain;
 }
 
 double similarity(const Screening& screening, const Variant& a, const Variant& b) {

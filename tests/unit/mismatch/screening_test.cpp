@@ -10,7 +10,10 @@
 #include "services/common/mismatch/baseline.hpp"
 #include "services/common/mismatch/held_out.hpp"
 #include "services/common/mismatch/linear_algebra.hpp"
+#include "services/common/mismatch/ranking.hpp"
+#include "services/common/mismatch/refits.hpp"
 #include "services/common/mismatch/sensitivity_pass.hpp"
+#include "services/common/mismatch/tolerance.hpp"
 #include "services/common/mismatch/windows.hpp"
 #include "tests/unit/mismatch/simulated_test.hpp"
 
@@ -84,7 +87,7 @@ Rows known_rows(const FittedModel& model, Eigen::Index laws) {
   for (Eigen::Index k = 0; k < shared; ++k) {
     const Unknown& unknown = model.problem.shared[static_cast<std::size_t>(k)];
     if (!unknown.is_known()) continue;
-    rows.shared(k, k) = -1.0 / unknown.prior_std;
+    rows.shared(k, k) = 1.0 / unknown.prior_std;
     rows.residual(k) = unknown.prior_residual(model.optimum.point.shared[static_cast<std::size_t>(k)]);
   }
   return rows;
@@ -131,6 +134,46 @@ TEST(Screening, TakesOffWhatTheUnknownsDo) {
       EXPECT_NEAR(screening->gram(j, k) / (size(j) * size(k)), gram(j, k) / (size(j) * size(k)), kRounding)
           << j << ' ' << k;
   }
+}
+
+// Of the law at the element: what it promises, and what its refit brings.
+std::pair<double, double> promised_and_brought(const Law& law, const std::string& element, const AssetConfig& asset,
+                                               const Data& data) {
+  Result<FittedModel> fitted = fit_model(asset, data, nullptr, 2);
+  EXPECT_TRUE(fitted) << fitted.error().describe();
+  const auto model = std::make_shared<const FittedModel>(std::move(*fitted));
+  const Result<Screening> screening = screen(*model, data, {});
+  EXPECT_TRUE(screening) << screening.error().describe();
+  for (const LawStart& start : ranked_laws(*screening, screening->candidates.size())) {
+    if (start.effect.law != &law || start.effect.element != element) continue;
+    double most = 0.0;
+    for (const Variant& variant : screening->variants) {
+      const Candidate& candidate = screening->candidates[variant.candidate];
+      if (candidate.law == &law && candidate.element == element) most = std::max(most, variant.gain);
+    }
+    const std::vector<Trial> trials = refit({{}, model}, {{start}}, data, 2);
+    EXPECT_EQ(trials.size(), 1U);
+    return {most, model->misfit - trials.front().model->misfit};
+  }
+  ADD_FAILURE() << "not asked";
+  return {};
+}
+
+// Fixed values move within their tolerances to do what a law would, which pays their priors, and come back beside it;
+// also from the ends of their ranges.
+TEST(Screening, PromisesWhatALawBringsBesideValuesThatMoved) {
+  const AssetConfig asset = with_free_parameters();
+  const auto asks = [&](const Law& law, const std::string& element, double strength) {
+    Data data = two_recordings(with_law(asset, law, element, std::vector<double>{strength}));
+    data.colour.clear();
+    data.weight.clear();
+    data.known = known_values(asset, **find_plant(asset.model));
+    const auto [promised, brought] = promised_and_brought(law, element, asset, data);
+    EXPECT_NEAR(promised / brought, 1.0, 0.1) << element << ' ' << strength;
+  };
+  for (const double strength : {4e-17, 4e-16, 4e-15})
+    asks(**find_law("external_leakage", {"G"}), "chamber_a", strength);
+  for (const double strength : {0.01, 0.03, 0.1}) asks(**find_law("sensor_gain", {"g"}), "sensor:pressure_a", strength);
 }
 
 // A drift counts from a recording's begin, which a window does not know.

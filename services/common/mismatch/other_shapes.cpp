@@ -218,10 +218,12 @@ bool take(Naming& naming, const Trial& trial, const Data& data, const ExplainOpt
 }
 
 std::vector<Trial> causes_among(std::vector<Trial> trials, const Trial& from) {
+  double least = from.model->misfit;
+  for (const Trial& trial : trials) least = std::min(least, trial.model->misfit);
   std::erase_if(trials, [&](const Trial& trial) {
     const bool measured =
         trial.effects.size() == from.effects.size() + 1 && is_of_measurement(trial.effects.back().law->kind);
-    return measured && takes_up_little(*from.model, *trial.model);
+    return measured && takes_up_little(*from.model, *trial.model, least);
   });
   return trials;
 }

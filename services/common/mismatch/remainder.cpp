@@ -81,8 +81,9 @@ bool leaves_its_form_at_most(const FittedModel& without, const FittedModel& with
 
 std::string left_beside(const LawAt& law, double share) { return may_be_the_form(law, share); }
 
-bool takes_up_little(const FittedModel& without, const FittedModel& with) {
-  return share_explained(without.misfit / without.residuals, with.misfit / with.residuals) < kExplainedAtLeast;
+bool takes_up_little(const FittedModel& without, const FittedModel& with, double least_misfit) {
+  const double noise = std::min({with.residuals, with.misfit, least_misfit});
+  return with.misfit - noise > (1.0 - kExplainedAtLeast) * (without.misfit - noise);
 }
 
 std::optional<NotTold> not_told_from_zero(const Trial& trial, const Resolution& resolution) {

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -44,8 +45,10 @@ using MoreThanForm = std::function<bool(const LawAt&, const LawAt&)>;
 /// The same to a user: which law, and how much is left.
 [[nodiscard]] std::string left_beside(const LawAt& law, double share);
 
-/// Whether what came in takes less than half of what the model without it leaves beyond the noise.
-[[nodiscard]] bool takes_up_little(const FittedModel& without, const FittedModel& with);
+/// Whether what came in takes less than half of what the model without it leaves beyond the noise. Some model that comes
+/// to `least_misfit` shows that the noise is no more than that.
+[[nodiscard]] bool takes_up_little(const FittedModel& without, const FittedModel& with,
+                                   double least_misfit = std::numeric_limits<double>::infinity());
 
 /// A law of a trial, and why it is not claimed.
 struct NotTold {

@@ -242,8 +242,8 @@ Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const 
 }
 
 Result<FittedModel> fit_model_beside(const PemPoint& beside, const AssetConfig& asset, const Data& data,
-                                     const FittedModel& start, int iterations, const SearchBound& bound) {
-  return fit_from(start, beside, asset, data, 1, iterations, bound);
+                                     const FittedModel& start, int threads, int iterations, const SearchBound& bound) {
+  return fit_from(start, beside, asset, data, threads, iterations, bound);
 }
 
 Result<FittedModel> fit_to_some(const FittedModel& model, const Data& data, std::span<const std::size_t> places,

@@ -69,7 +69,8 @@ inline constexpr int kSearchIterations = 30;
 /// The first iterations of the same, from values that `beside` changes (of as many unknowns as `start` has; empty: none),
 /// until `bound` is out of reach. Simulations stay as exact as they were where it sets out.
 [[nodiscard]] Result<FittedModel> fit_model_beside(const PemPoint& beside, const AssetConfig& asset, const Data& data,
-                                                   const FittedModel& start, int iterations, const SearchBound& bound);
+                                                   const FittedModel& start, int threads, int iterations,
+                                                   const SearchBound& bound);
 
 /// Fits the model anew to some of its recordings (or windows), from where it ended. `places`: theirs among its own, one
 /// for each of `data`; beyond these for one that it was not fitted to.

@@ -46,16 +46,16 @@ bool came_to_an_end(const FittedModel& model, const std::vector<LawStart>& added
 // at once, beside sizes that are far off, a shape drifts to the end of its range and stays there. Where that leaves
 // nothing of a law, the shape was a wrong one, and is free from the start.
 Result<FittedModel> sizes_first(AssetConfig asset, const std::vector<LawStart>& added, const Data& data,
-                                const FittedModel& from, const SearchBound& bound) {
+                                const FittedModel& from, int threads, const SearchBound& bound) {
   const AssetConfig free = asset;
   for (std::size_t k = 0; k < added.size(); ++k)
     for (const LawParameter& parameter : added[k].effect.law->parameters)
       if (!parameter.strength)
         asset.physics[asset.physics.size() - added.size() + k].parameters.at(std::string(parameter.name)).estimate =
             false;
-  const Result<FittedModel> sized = fit_model_beside({}, asset, data, from, kFirstRound, {});
+  const Result<FittedModel> sized = fit_model_beside({}, asset, data, from, threads, kFirstRound, {});
   const bool sizes_fit = sized && !came_to_an_end(*sized, added);
-  return fit_model_beside({}, free, data, sizes_fit ? *sized : from, kFirstRound, bound);
+  return fit_model_beside({}, free, data, sizes_fit ? *sized : from, threads, kFirstRound, bound);
 }
 
 // What changes beside all of them; empty where that is not known.
@@ -184,6 +184,9 @@ class Refits {
   }
 
  private:
+  [[nodiscard]] int threads_of_each(std::size_t refits) const {
+    return std::max(1, threads_ / static_cast<int>(refits));
+  }
   [[nodiscard]] const Data& first_data() const { return first_ ? first_->data : data_; }
   [[nodiscard]] SearchBound bound_after(const FittedModel& best) const {
     const GoesOn goes_on(best, options_.to_beat);
@@ -196,7 +199,8 @@ class Refits {
     if (std::isfinite(options_.to_beat)) bound_ = bound_after(*from_.model);
     for (std::size_t begin = 0, count = 0; begin < laws.size(); begin += count) {
       count = std::min(begin == 0 ? kAhead : laws.size(), laws.size() - begin);
-      for (Refit& refit : in_parallel<Refit>(count, threads_, [&](std::size_t k) { return one(laws[begin + k]); }))
+      for (Refit& refit : in_parallel<Refit>(
+               count, threads_, [&](std::size_t k) { return one(laws[begin + k], threads_of_each(count)); }))
         if (refit.model != nullptr) refits.push_back(std::move(refit));
       if (refits.empty()) continue;
       std::ranges::stable_sort(refits, {}, [](const Refit& refit) { return refit.model->misfit; });
@@ -206,19 +210,19 @@ class Refits {
   }
 
   // With a strength of nothing a law leaves what was there before: one that leaves more set out too far.
-  [[nodiscard]] Refit one(const std::vector<LawStart>& added) const {
-    Refit refit = start(added, 1.0);
+  [[nodiscard]] Refit one(const std::vector<LawStart>& added, int threads) const {
+    Refit refit = start(added, 1.0, threads);
     const bool cut = refit.model != nullptr && refit.model->optimum.out_of_reach;
     const bool worse = options_.again_smaller && !first_ && !cut && options_.in_place_of.empty() &&
                        excess(*from_.model) < kFar &&
                        (refit.model == nullptr || refit.model->misfit > from_.model->misfit);
     if (!worse) return refit;
-    Refit again = start(added, kSmaller);
+    Refit again = start(added, kSmaller, threads);
     const bool better = again.model != nullptr && (refit.model == nullptr || again.model->misfit < refit.model->misfit);
     return better ? again : refit;
   }
 
-  [[nodiscard]] Refit start(const std::vector<LawStart>& added, double share) const {
+  [[nodiscard]] Refit start(const std::vector<LawStart>& added, double share, int threads) const {
     Refit refit{.effects = from_.effects, .model = nullptr};
     AssetConfig asset = first_ ? first_->asset : from_.model->asset;
     for (const std::size_t out : options_.in_place_of | std::views::reverse) {
@@ -232,14 +236,14 @@ class Refits {
       asset = with_law(std::move(asset), *law.effect.law, law.effect.element, parameters);
     }
     const auto set_out = [&](const PemPoint& beside) {
-      return fit_model_beside(beside, asset, first_data(), *from_.model, kFirstRound, bound_);
+      return fit_model_beside(beside, asset, first_data(), *from_.model, threads, kFirstRound, bound_);
     };
     // In a gross misfit the linear model of a free run says too little of what changes beside a law.
     const bool tells_little = gross_ && data_.held_within_s == 0.0;
     const PemPoint beside = tells_little ? PemPoint{} : beside_all(added, share);
     const bool has_sizes = options_.in_place_of.empty() || options_.sized;
     Result<FittedModel> model =
-        has_sizes ? set_out(beside) : sizes_first(asset, added, first_data(), *from_.model, bound_);
+        has_sizes ? set_out(beside) : sizes_first(asset, added, first_data(), *from_.model, threads, bound_);
     if (!model && !beside.own.empty()) model = set_out({});  // where the linear model leads, nothing can be simulated
     if (model) refit.model = std::make_shared<FittedModel>(std::move(*model));
     return refit;
@@ -247,24 +251,25 @@ class Refits {
 
   // Each as long as it may come near the best so far.
   void go_on(std::span<Refit> refits) {
-    const std::vector<Refit> gone_on =
-        in_parallel<Refit>(refits.size(), threads_, [&](std::size_t k) { return further(refits[k]); });
+    const std::vector<Refit> gone_on = in_parallel<Refit>(
+        refits.size(), threads_, [&](std::size_t k) { return further(refits[k], threads_of_each(refits.size())); });
     std::ranges::copy(gone_on, refits.begin());
     for (const Refit& refit : gone_on)
       if (refit.model->misfit < best_->misfit) best_ = refit.model;
   }
 
-  [[nodiscard]] Refit further(Refit refit) const {
+  [[nodiscard]] Refit further(Refit refit, int threads) const {
     const GoesOn goes_on(*best_, options_.to_beat);
     bool open = goes_on.at_first(*refit.model) || !is_exact_enough(*refit.model);
     if (first_ && goes_on.is_hopeful(*refit.model)) {
-      Result<FittedModel> model = fit_model(refit.model->asset, data_, refit.model.get(), 1, kRound, goes_on.bound());
+      Result<FittedModel> model =
+          fit_model(refit.model->asset, data_, refit.model.get(), threads, kRound, goes_on.bound());
       if (!model) return refit;
       refit.model = std::make_shared<FittedModel>(std::move(*model));
       open = goes_on.at_first(*refit.model);
     }
     for (int round = 0; round < kRounds && open; ++round) {
-      Result<FittedModel> model = continue_fit(*refit.model, data_, 1, kRound, goes_on.bound());
+      Result<FittedModel> model = continue_fit(*refit.model, data_, threads, kRound, goes_on.bound());
       if (!model || (is_exact_enough(*refit.model) && model->misfit > refit.model->misfit)) break;
       open = goes_on.after(*refit.model, *model);
       refit.model = std::make_shared<FittedModel>(std::move(*model));

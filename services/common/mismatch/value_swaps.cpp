@@ -222,9 +222,9 @@ std::vector<Promise> promises_of(const SwapQuestion& of, const FittedModel& all,
 std::optional<FittedModel> fitted(const SwapQuestion& of, const Promise& promise, const FittedModel& all,
                                   const SearchBound& bound) {
   const AssetConfig asset = swapped(of, promise.out, promise.value);
-  Result<FittedModel> model = fit_model_beside(promise.change, asset, of.data, all, kIterations, bound);
+  Result<FittedModel> model = fit_model_beside(promise.change, asset, of.data, all, 1, kIterations, bound);
   if (!model || model->optimum.out_of_reach) {
-    Result<FittedModel> other = fit_model_beside({}, asset, of.data, all, kIterations, bound);
+    Result<FittedModel> other = fit_model_beside({}, asset, of.data, all, 1, kIterations, bound);
     if (other && (!model || model->optimum.out_of_reach)) model = std::move(other);
   }
   if (!model || model->optimum.out_of_reach) return std::nullopt;

@@ -152,11 +152,11 @@ TEST(FittedModel, KeptDerivativesEndInTheSamePlace) {
   another.parameters.at("f_M").value *= 1.3;
   another.parameters.at("f_C").estimate = true;
   const PemPoint little = beside_the_first(*early, 0.02);
-  const Result<FittedModel> at_start = fit_model_beside(little, another, data, *early, 0, {});
+  const Result<FittedModel> at_start = fit_model_beside(little, another, data, *early, 1, 0, {});
   const Result<FittedModel> kept = fit_model(another, data, &*early, 2);
   for (Linearisation& at : early->optimum.at_optimum) at.jacobian.resize(0, 0);
   const Result<FittedModel> anew = fit_model(another, data, &*early, 2);
-  const Result<FittedModel> start_anew = fit_model_beside(little, another, data, *early, 0, {});
+  const Result<FittedModel> start_anew = fit_model_beside(little, another, data, *early, 1, 0, {});
   ASSERT_TRUE(kept && anew && at_start && start_anew);
   for (std::size_t r = 0; r < data.samples.size(); ++r) {
     const Linearisation &near = at_start->optimum.at_optimum[r], &here = start_anew->optimum.at_optimum[r];
@@ -176,11 +176,11 @@ TEST(FittedModel, ASearchEndsWhereItCannotComeToWhatIsKnown) {
   ASSERT_TRUE(start) << start.error().describe();
   const SearchBound half{.cost = 0.25 * start->misfit};
   const PemPoint little = beside_the_first(*start, 0.01);
-  const Result<FittedModel> cut = fit_model_beside(little, start->asset, data, *start, 30, half);
+  const Result<FittedModel> cut = fit_model_beside(little, start->asset, data, *start, 1, 30, half);
   ASSERT_TRUE(cut) << cut.error().describe();
   EXPECT_FALSE(cut->optimum.converged);
   EXPECT_LE(cut->optimum.iterations, 2) << "the start, and there again with all derivatives";
-  const Result<FittedModel> whole = fit_model_beside(little, start->asset, data, *start, 30, {});
+  const Result<FittedModel> whole = fit_model_beside(little, start->asset, data, *start, 1, 30, {});
   ASSERT_TRUE(whole) << whole.error().describe();
   EXPECT_TRUE(whole->optimum.converged);
 }
@@ -195,8 +195,8 @@ TEST(FittedModel, ALawSetsOutBesideUnknownsThatGiveBackWhatItDoes) {
   const LawStart law = ranked_laws(*screening, 1).front();
   ASSERT_FALSE(law.beside.own.empty());
   const AssetConfig with = with_law(without->asset, *law.effect.law, law.effect.element, law.parameters);
-  const Result<FittedModel> beside = fit_model_beside(law.beside, with, data, *without, 0, {}),
-                            on_top = fit_model_beside({}, with, data, *without, 0, {});
+  const Result<FittedModel> beside = fit_model_beside(law.beside, with, data, *without, 1, 0, {}),
+                            on_top = fit_model_beside({}, with, data, *without, 1, 0, {});
   ASSERT_TRUE(beside && on_top);
   EXPECT_LT(beside->misfit, on_top->misfit);
 }

@@ -66,6 +66,8 @@ class Analysis {
   // Whether one value of the asset file leaves no gross misfit. Set out from the recorded states, several laws would fill
   // its place.
   [[nodiscard]] bool a_value_ends_it(const Screening& first) const;
+  // The same of one law, where the linear model promises that: a sensor's, to whose course states would be held.
+  [[nodiscard]] bool a_law_ends_it(const Screening& first) const;
   // Sensors that were off beside what differs are so in common; also where the time to search is over.
   Result<Screening> look_with_inexact_sensors(const std::vector<KnownValue>& known, const ScreeningOptions& options);
   // Also where the time to search is over: it is what is told then.

@@ -9,6 +9,8 @@
 #include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/held_start.hpp"
 #include "services/common/mismatch/own_gains.hpp"
+#include "services/common/mismatch/ranking.hpp"
+#include "services/common/mismatch/refits.hpp"
 #include "services/common/mismatch/resolution.hpp"
 #include "services/common/mismatch/telling.hpp"
 #include "services/common/mismatch/tolerance.hpp"
@@ -103,7 +105,8 @@ Status Analysis::look_from(std::optional<Trial> from) {
   if (own_) fit_.may_differ.clear();  // nothing else was found to differ beside it
   if (common) from = std::move(common);
   if (own_) tell("looking again, with one value for all tests", 0.5);
-  if (!from && options.maximum_laws > 0 && excess(*baseline_) > kGross && !a_value_ends_it(*first)) {
+  if (!from && options.maximum_laws > 0 && excess(*baseline_) > kGross && !a_value_ends_it(*first) &&
+      !a_law_ends_it(*first)) {
     tell("setting out from the recorded states", 0.2);
     HeldStart held = start_from_held(*baseline_, prepared(fit_), options);
     from = std::move(held.trial);
@@ -145,6 +148,16 @@ bool Analysis::another_differs_rather(const Trial& common) const {
 bool Analysis::a_value_ends_it(const Screening& first) const {
   const Naming naming{.baseline = baseline_, .best = {{}, baseline_}, .trials = {}, .first = first, .last = first};
   return value_that_ends_it(naming, prepared(fit_), options_.threads).has_value();
+}
+
+bool Analysis::a_law_ends_it(const Screening& first) const {
+  constexpr std::size_t kAsked = 2;
+  constexpr double kLeft = 0.1;  // of the misfit: more is left by most laws that the linear model favours
+  std::vector<std::vector<LawStart>> starts;
+  for (LawStart& start : ranked_laws(first, kAsked)) starts.push_back({std::move(start)});
+  if (starts.empty() || baseline_->misfit - by_gain(first).front()->gain > kLeft * baseline_->misfit) return false;
+  const std::vector<Trial> trials = refit({{}, baseline_}, starts, prepared(fit_), options_.threads);
+  return std::ranges::any_of(trials, [](const Trial& trial) { return excess(*trial.model) <= kGross; });
 }
 
 Result<Screening> Analysis::look_with_inexact_sensors(const std::vector<KnownValue>& known,

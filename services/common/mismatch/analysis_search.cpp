@@ -319,7 +319,7 @@ void Analysis::take_over(const OwnValues& own) {
 
 void Analysis::look_for_a_change() {
   if (!result_.statistically_significant || windowed() || fit_.samples.size() < 2) return;
-  if (leaves_nothing()) return;
+  if (leaves_nothing() || leaves_its_form(naming_)) return;
   if (const auto change = change_between_tests(asset_, fit_, *best_.model)) why_none_ = something_changed(*change);
 }
 

@@ -532,6 +532,8 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     if (from.is_start && in_time("other laws in place of those found with held states")) {
       another_law_for_each(naming, data, options);
       one_law_for_several(naming, data, options);
+    } else if (in_time("other laws in place of those found before, with what is unknown now")) {
+      compete_again(naming, data, options);
     }
   }
   const auto is_near = [&] { return excess(*naming.best.model) < data.least_excess; };

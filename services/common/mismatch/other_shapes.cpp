@@ -287,6 +287,22 @@ void another_law_for_each(Naming& naming, const Data& data, const ExplainOptions
   static_cast<void>(take(naming, *best, data, options));
 }
 
+void compete_again(Naming& naming, const Data& data, const ExplainOptions& options) {
+  if (naming.best.effects.size() != 1 || excess(*naming.best.model) > kGross || is_at_the_noise(naming, options))
+    return;
+  const Effect& found = naming.best.effects.front();
+  std::vector<std::vector<LawStart>> starts;
+  for (LawStart& start : ranked_laws(causes_in(naming.first, *naming.baseline), kOtherLaws))
+    if (start.effect.law != found.law || start.effect.element != found.element) starts.push_back({std::move(start)});
+  const std::vector<Trial> trials =
+      refit(naming.best, starts, data, options.threads, {.in_place_of = {0}, .to_beat = naming.best.model->misfit});
+  naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
+  const double phi = smallest_dispersion(trials, *naming.best.model);
+  const Trial* best = best_of(trials, phi);
+  if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi)) return;
+  static_cast<void>(take(naming, *best, data, options));
+}
+
 void one_law_for_several(Naming& naming, const Data& data, const ExplainOptions& options) {
   if (excess(*naming.best.model) > kGross) return;
   std::set<std::string> elements;

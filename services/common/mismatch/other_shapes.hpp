@@ -20,6 +20,10 @@ void from_other_shapes(Naming& naming, const Trial& before, const Screening& ask
 /// does as well.)
 void another_law_for_each(Naming& naming, const Data& data, const ExplainOptions& options);
 
+/// Near the noise the one law found competes again with those that promise most: what was found before something else was
+/// unknown (sensors' gains, a value of each test) was compared without that.
+void compete_again(Naming& naming, const Data& data, const ExplainOptions& options);
+
 /// Several laws at one element may be parts of one (dry friction, drag and friction by pressure: a Stribeck curve):
 /// each law of the element is asked for what they do together, and stays where several are not worth another law.
 void one_law_for_several(Naming& naming, const Data& data, const ExplainOptions& options);

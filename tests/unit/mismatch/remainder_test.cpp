@@ -108,5 +108,15 @@ TEST(Remainder, ALawWhoseStrengthMayBeNothingIsNotClaimed) {
   EXPECT_THAT(nothing->sentence, testing::HasSubstr("external leakage at chamber A"));
 }
 
+TEST(TakesUpLittle, TellsByTheBestModelWhereThatMissesByLessThanTheDeclaredNoise) {
+  FittedModel without, best, other;
+  without.residuals = best.residuals = other.residuals = 1e4;
+  without.misfit = 9855.0;
+  best.misfit = 9757.0;
+  other.misfit = 9818.0;
+  EXPECT_FALSE(takes_up_little(without, best, best.misfit));
+  EXPECT_TRUE(takes_up_little(without, other, best.misfit));
+}
+
 }  // namespace
 }  // namespace sealwatch::mismatch

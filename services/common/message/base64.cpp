@@ -27,26 +27,28 @@ std::uint32_t digit_of(char letter) { return kDigits[static_cast<unsigned char>(
 
 }  // namespace
 
-void append_base64(const std::vector<double>& values, std::string& text) {
-  const std::size_t size = values.size() * sizeof(double);
-  std::vector<unsigned char> bytes(size + 2);  // and what fills the last group
-  if (size != 0) std::memcpy(bytes.data(), values.data(), size);
+void append_base64(std::string_view bytes, std::string& text) {
+  const auto at = [bytes](std::size_t k) {
+    return k < bytes.size() ? std::uint32_t{static_cast<unsigned char>(bytes[k])} : 0;
+  };
   const std::size_t begin = text.size();
-  text.resize(begin + (size + 2) / 3 * 4);
+  text.resize(begin + (bytes.size() + 2) / 3 * 4);
   char* to = text.data() + begin;
-  for (std::size_t k = 0; k < size; k += 3, to += 4) {
-    const std::uint32_t group = std::uint32_t{bytes[k]} << 16U | std::uint32_t{bytes[k + 1]} << 8U | bytes[k + 2];
+  for (std::size_t k = 0; k < bytes.size(); k += 3, to += 4) {
+    const std::uint32_t group = at(k) << 16U | at(k + 1) << 8U | at(k + 2);
     for (unsigned c = 0; c < 4; ++c) to[c] = kAlphabet[group >> (18U - 6U * c) & 63U];
   }
-  for (std::size_t filler = (3 - size % 3) % 3; filler != 0; --filler) *(to - filler) = '=';
+  for (std::size_t filler = (3 - bytes.size() % 3) % 3; filler != 0; --filler) *(to - filler) = '=';
 }
 
-bool from_base64(std::string_view text, std::vector<double>& values) {
+void append_base64(const std::vector<double>& values, std::string& text) {
+  append_base64({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)}, text);
+}
+
+bool from_base64(std::string_view text, std::string& bytes) {
   text = text.substr(0, text.find('='));
-  const std::size_t size = text.size() / 4 * 3 + text.size() % 4 * 3 / 4;
-  if (size % sizeof(double) != 0) return false;
-  std::vector<unsigned char> bytes((text.size() + 3) / 4 * 3);
-  unsigned char* to = bytes.data();
+  bytes.resize((text.size() + 3) / 4 * 3);
+  char* to = bytes.data();
   std::uint32_t all = 0;
   for (std::size_t k = 0; k < text.size(); k += 4, to += 3) {
     std::uint32_t group = 0;
@@ -55,13 +57,19 @@ bool from_base64(std::string_view text, std::vector<double>& values) {
       all |= digit;
       group = group << 6U | digit;
     }
-    to[0] = static_cast<unsigned char>(group >> 16U);
-    to[1] = static_cast<unsigned char>(group >> 8U);
-    to[2] = static_cast<unsigned char>(group);
+    to[0] = static_cast<char>(group >> 16U);
+    to[1] = static_cast<char>(group >> 8U);
+    to[2] = static_cast<char>(group);
   }
-  if ((all & kNone) != 0) return false;
-  values.resize(size / sizeof(double));
-  if (size != 0) std::memcpy(values.data(), bytes.data(), size);
+  bytes.resize(text.size() / 4 * 3 + text.size() % 4 * 3 / 4);
+  return (all & kNone) == 0;
+}
+
+bool from_base64(std::string_view text, std::vector<double>& values) {
+  std::string bytes;
+  if (!from_base64(text, bytes) || bytes.size() % sizeof(double) != 0) return false;
+  values.resize(bytes.size() / sizeof(double));
+  if (!bytes.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
   return true;
 }
 

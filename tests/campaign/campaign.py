@@ -7,6 +7,7 @@ Usage: campaign.py BIN_DIRECTORY [kills|bits|damages|full_disk|read_only|clock_s
            [--kills N] [--bits N] [--damages N] [--tests N] [--steps N] [--seconds N] [--assets N] [--live N] [--floods NAMES]
 """
 import argparse
+import contextlib
 import ctypes
 import fcntl
 import heapq
@@ -37,7 +38,7 @@ SERVICES = ["data-acquisition", "data-manipulation", "state-detection", "health-
 DOMAIN = 96
 PATIENCE_S = float(os.environ.get("CAMPAIGN_PATIENCE_S", 240.0))  # longer where the machine has much else to do
 TRIALS = ["kills", "bits", "damages", "full_disk", "read_only", "clock_steps", "two_hosts", "flood", "poison", "overdue",
-          "leaks", "years", "history"]
+          "leaks", "years", "history", "packed"]
 LIVE_DOMAIN = 97  # of tests/perf/services/live_latency.cpp
 MOST_STATUS_KB = 200.0      # what `status --json` says of six services, whatever strangers sent
 MOST_GROWTH_MB = 100.0      # of a service under a flood: its queues and inboxes, all of them bounded
@@ -48,7 +49,7 @@ BOUNDED = ("FROM outputs WHERE asset_id =", "FROM outputs WHERE ordinal", "FROM 
 FINDING = re.compile(r"\w+Sanitizer: .*|runtime error: .*")  # of a build with sanitizers, whatever its exit status
 TABLES = {"inputs": ["message_id", "payload", "consumed", "pst_id"], "outputs": ["payload", "asset_id", "checksum"],
           "positions": ["sequence", "writer_id"], "quarantine": ["reason"], "acts": ["who", "hash"],
-          "meta": ["value"], "alarms": ["payload"]}
+          "meta": ["value"], "alarms": ["payload"], "packed_outputs": ["body", "ends"]}
 
 
 class Failed(Exception):
@@ -860,6 +861,53 @@ class Campaign:
             pages[text] = pages.get(text, 0) + int(count)
         shutil.rmtree(state)
         return pages
+
+    def packed(self):
+        """Services that read their past from what they packed go on as those that read it all from JSON, a retraction in it."""
+        files = self.simulated(self.folder / "packed", 20, "--months", "24", "--seed", "3")
+        first, rest = files[:20], files[20:]
+        with World(self.binaries, self.folder) as world:
+            world.start_all()
+            world.wait_until_running()
+            replayed(world, first)
+            test = sorted(world.results()["state-detection"])[2].split("/")[1]
+            if (retracted := world.run("retract", "XT03-MV2", "--test", test, "--by", "campaign", "--reason", "a trial")).returncode != 0:
+                raise Failed(f"the retraction was not taken: {retracted.stderr}")
+            time.sleep(2.0)  # all layers have concluded anew
+            world.stop()
+            self.start_up_s(world)  # packs
+            world.stop()
+            base = world.state
+        # Each with how many services say that they read all of it.
+        changes = {"packed": (None, 0), "not packed": ("DELETE FROM packed_outputs", 0),
+                   "damaged": ("UPDATE packed_outputs SET body = 'A' || body", len(SERVICES)),
+                   "another's": ("UPDATE packed_outputs SET layout = 'another'", len(SERVICES))}
+        results = {name: self.gone_on(base, name.replace(" ", "-"), rest, *change) for name, change in changes.items()}
+        for name, found in results.items():
+            if difference := differences(results["not packed"], found):
+                raise Failed(f"{name}: {difference}")
+        return f"{len(first)} tests, a retraction, a start, {len(rest)} tests: identical {', '.join(results)}"
+
+    def gone_on(self, base, name, files, change, refusals):
+        """The results of the rest of the tests on a copy of the state, with a change of what is packed in it."""
+        state = self.folder / name
+        shutil.copytree(base, state)
+        shutil.rmtree(state / "log")
+        for service in SERVICES:
+            with contextlib.closing(sqlite3.connect(state / database(service))) as journal, journal:
+                if journal.execute("SELECT count(*) FROM packed_outputs").fetchone()[0] == 0:
+                    raise Failed(f"{service} has packed nothing")
+                if change:
+                    journal.execute(change)
+        with World(self.binaries, self.folder, state) as world:
+            world.start_all()
+            world.wait_until_running()
+            replayed(world, files)
+            world.stop()
+            logs = "".join(file.read_text() for file in (state / "log").glob("*.log"))
+            if (told := logs.count("the packed past is not used")) != refusals:
+                raise Failed(f"{name}: {told} services say that they read all of their past")
+            return world.results()
 
     def start_up_s(self, world):
         """All are left running."""

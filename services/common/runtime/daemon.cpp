@@ -148,6 +148,7 @@ void end_with_supervisor() {
 RunnerOptions runner_options(const DaemonParts& parts, const Configuration& configuration) {
   RunnerOptions options;
   options.version = kVersion;
+  options.build = parts.version_line;
   options.commissioned = configuration.commissioned;
   options.watches_clock = parts.service == "data_acquisition";  // where tests get their time; six would say the same
   options.read_clock = read_clock;

@@ -48,6 +48,7 @@ namespace sealwatch {
 
 struct RunnerOptions {
   std::string version = {};
+  std::string build = {};  ///< of this program: what one build packed (store/packed_past.hpp) no other reads
   Heartbeat::Options heartbeat = {};
   /// Batches begin so far apart at least: of a thousand messages a second, two or three share a transaction, which
   /// nearly halves what is written to the journal.

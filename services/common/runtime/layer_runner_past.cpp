@@ -20,6 +20,7 @@ constexpr std::chrono::milliseconds kInPassing{5};
 }  // namespace
 
 Status LayerRunner::restore_past() {
+  journal_.pack_for(options_.build);
   const auto acts = journal_.acts();
   if (!acts) return fail(acts.error());
   past_acts_ = past_retractions(*acts);
@@ -69,6 +70,8 @@ Status LayerRunner::recall(const std::string& asset_id) {
       },
       [this](const Message& last_of_test) { return kind_->tells_all(last_of_test); });
   if (!outputs) return outputs;
+  if (const auto refused = journal_.take_packed_refused())
+    log_event(LogLevel::warn, "the packed past is not used, all outputs are read", {{"reason", *refused}});
   for (; act != acts.end(); ++act) admission_.note_act(asset_id, act->id);
   count_past_acts(asset_id);
   if (desk_ && advice) desk_->stand(*advice, clock_.now());

@@ -14,6 +14,7 @@
 #include "services/common/store/checkpointer.hpp"
 #include "services/common/store/journal.hpp"
 #include "services/common/store/journal_lock.hpp"
+#include "services/common/store/packed_past.hpp"
 #include "services/common/store/rows.hpp"
 #include "services/common/store/statements.hpp"
 
@@ -22,7 +23,7 @@ namespace sealwatch {
 /// Raised when the layout of the tables changes: a journal of an older version is changed when it is opened
 /// (schema.cpp), one of a newer version is refused, not guessed at. Stands in table meta and, in SQLite, in user_version as well: a
 /// turned bit changes only one of them.
-inline constexpr int kJournalSchemaVersion = 4;
+inline constexpr int kJournalSchemaVersion = 5;
 
 /// Table meta: that an output was found damaged while it was read.
 inline constexpr const char* kToBeMended = "to_be_mended";
@@ -56,8 +57,12 @@ struct Journal::Database {
   std::optional<Checkpointer> checkpointer;                     ///< SQLite's
   Survives synchronous = Survives::power_cuts;                  ///< as SQLite is set now
   std::set<std::pair<std::string, std::string>> damaged_tests;  ///< asset, PST id
-  long long checked = 0;                                        ///< outputs up to here are as they were written
-  long long outputs_looked_up = 0;                              ///< up to here the indexes find them
+  bool packs = true;                                            ///< assets' pasts
+  std::string packs_for;                                        ///< version of the program
+  std::string packed_refused;  ///< of the first asset whose past is read from JSON again, with the reason
+  bool told_packed_refused = false;
+  long long checked = 0;            ///< outputs up to here are as they were written
+  long long outputs_looked_up = 0;  ///< up to here the indexes find them
   long long inputs_looked_up = 0;
   std::optional<JournalLock> lock;  ///< SQLite's
   bool is_made = false;             ///< by this process
@@ -110,6 +115,10 @@ struct Journal::Database {
   /// It waits for the disk.
   void remember_now_and_then();
   [[nodiscard]] bool is_file() { return sql.get_backend_name() == "sqlite3"; }
+
+  // journal_past.cpp
+  [[nodiscard]] bool has_damaged_test(const std::string& asset_id) const;
+  [[nodiscard]] PackedPast packed_past_of(const std::string& asset_id);
 
   // schema.cpp
   void create_schema();

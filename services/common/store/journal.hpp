@@ -92,9 +92,14 @@ class Journal {
   /// all of that test is concluded again (journal_mend.cpp).
   [[nodiscard]] Status for_each_output(const Visitor& visit);
   /// Every output about one asset, likewise. Of a test of which the last tells all, the others of its topic are left out,
-  /// and those of other topics come with their ids and the last one's header alone.
+  /// and those of other topics come with their ids and the last one's header alone. What was read from JSON is packed,
+  /// and read from there the next time, without the samples of what tells all.
   [[nodiscard]] Status for_each_output_of(const std::string& asset_id, const NumberedVisitor& visit,
                                           const TellsAll& tells_all);
+  /// What is packed is read by this version of the program alone.
+  void pack_for(const std::string& version);
+  /// Where the past of an asset was packed (packed_past.hpp) and had to be read from JSON again: which, and why. Once.
+  [[nodiscard]] std::optional<std::string> take_packed_refused();
   /// Assets about which there is an output or an open input, those with open inputs first.
   [[nodiscard]] Result<std::vector<std::string>> assets();
   /// Looks at the next few outputs that were not looked at since the journal was opened; false when there are no more.

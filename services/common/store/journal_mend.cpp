@@ -132,6 +132,7 @@ void Journal::Database::mend() {
   soci::transaction transaction(sql);
   const bool all = !meta(kToBeMended).empty();
   if (all) make_indexes_anew();
+  if (all) forget_all_packed(sql);
   mend_positions();
   mend_quarantine();
   mend_inputs();
@@ -251,6 +252,7 @@ void Journal::Database::mend_outputs(bool all) {
   for (const DamagedRow& row : damaged_rows(sql, all ? "outputs" : kSomeOutputs, end, checked)) {
     if (put_checksum_right(sql, row, true) || put_right(sql, row)) continue;
     sql << "UPDATE outputs SET checksum = 'damaged' WHERE ordinal = :ordinal", use(row.order, "ordinal");
+    forget_packed(sql, row.asset_id);
     tell(sql, row, "damaged in the journal; it is concluded again from the neighbours' messages, where they have them");
     std::vector<DamagedRow> sources;
     DamagedRow source;
@@ -337,6 +339,7 @@ std::optional<Message> Journal::Database::fill_place(const Message& message, Utc
       use(payload, "payload"), use(checksum, "checksum"), use(topic, "topic"), use(asset, "asset"),
       use(header.pst_id, "pst"), use(published, "published"), use(ordinal, "ordinal");
   sql << "UPDATE quarantine SET state = 'released' WHERE message_id = :id", use(header.message_id, "id");
+  forget_packed(sql, asset);
   know_damaged_tests();
   Message placed = message;
   header_of(placed).writer_id = writer_id;

@@ -1,6 +1,5 @@
 // What a journal drops when it has kept it for long enough: samples alone. The row stays, with its id, its number and all
 // that the message says but its samples.
-#include "sealwatch/message/outside.hpp"
 #include "services/common/message/json.hpp"
 #include "services/common/store/database.hpp"
 #include "services/common/store/row_checksum.hpp"
@@ -14,14 +13,6 @@ namespace {
 
 /// Outputs that are looked at at once: after twenty years hardly any of them has its samples.
 constexpr int kSomeSamples = 256;
-
-Message without_samples(Message message) {
-  if (auto* block = std::get_if<SampleBlock>(&message)) block->samples = {};
-  if (auto* window = std::get_if<TestWindow>(&message)) window->samples = {};
-  Header& header = header_of(message);
-  if (!is_expired(header.producer)) header.producer.insert(0, kExpired);
-  return message;
-}
 
 }  // namespace
 

@@ -22,6 +22,20 @@ Message what_is_left(Topic topic, const MessageRow& row) {
 
 }  // namespace
 
+bool has_samples(const Message& message) {
+  const auto* const block = std::get_if<SampleBlock>(&message);
+  const auto* const window = std::get_if<TestWindow>(&message);
+  return (block != nullptr && !block->samples.time_s.empty()) || (window != nullptr && !window->samples.time_s.empty());
+}
+
+Message without_samples(Message message) {
+  if (auto* block = std::get_if<SampleBlock>(&message)) block->samples = {};
+  if (auto* window = std::get_if<TestWindow>(&message)) window->samples = {};
+  Header& header = header_of(message);
+  if (!is_expired(header.producer)) header.producer.insert(0, kExpired);
+  return message;
+}
+
 bool is_as_written(const MessageRow& output) {
   const bool is_known = !output.checksum.empty() && output.checksum != kDamaged && output.checksum != kExpiredRow;
   return !is_known ||

@@ -30,6 +30,12 @@ inline constexpr const char* kOutput =
 /// Rows of a query that begins so, or with the like of inputs, with :after bound.
 [[nodiscard]] std::vector<MessageRow> rows_of(soci::session& sql, const std::string& query, long long after);
 
+/// Whether it is of a topic that carries samples, and does.
+[[nodiscard]] bool has_samples(const Message& message);
+
+/// As it is once its samples are dropped: its producer says so (is_expired).
+[[nodiscard]] Message without_samples(Message message);
+
 /// Whether an output is as it was written, as far as its checksum tells.
 [[nodiscard]] bool is_as_written(const MessageRow& output);
 

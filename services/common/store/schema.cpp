@@ -1,4 +1,5 @@
 // The tables of a journal: made, brought from an older version to this one, or refused.
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <random>
@@ -41,8 +42,9 @@ constexpr const char* kAnchors =
     " hash VARCHAR(64) NOT NULL, PRIMARY KEY(service, sequence, hash))";
 
 /// What makes version n + 2 of version n + 1. Version 2: checksums of rows; those of older rows are not known. Version
-/// 3: alarms. Version 4: indexes by which a start reads no more than it needs, however long the history; anchors.
-constexpr std::array<std::array<const char*, 5>, 3> kChanges = {{
+/// 3: alarms. Version 4: indexes by which a start reads no more than it needs, however long the history; anchors. Version
+/// 5: packed_outputs, which an older program would not keep to what it mends.
+constexpr std::array<std::array<const char*, 5>, 4> kChanges = {{
     {"ALTER TABLE inputs ADD COLUMN checksum VARCHAR(16)", "ALTER TABLE outputs ADD COLUMN checksum VARCHAR(16)",
      "ALTER TABLE positions ADD COLUMN checksum VARCHAR(16)", "ALTER TABLE quarantine ADD COLUMN checksum VARCHAR(16)",
      "CREATE INDEX outputs_damaged ON outputs(asset_id, pst_id) WHERE checksum = 'damaged'"},
@@ -50,6 +52,7 @@ constexpr std::array<std::array<const char*, 5>, 3> kChanges = {{
     {"CREATE INDEX outputs_of_asset ON outputs(asset_id, ordinal, pst_id, topic)", "DROP INDEX inputs_open",
      "CREATE INDEX inputs_open ON inputs(asset_id, receipt) WHERE consumed = 0",
      "CREATE INDEX inputs_kept ON inputs(receipt) WHERE payload IS NOT NULL OR consumed <> 1", kAnchors},
+    {kPackedOutputs},
 }};
 static_assert(kChanges.size() + 1 == kJournalSchemaVersion);
 
@@ -101,14 +104,16 @@ void Journal::Database::create_schema() {
   is_made = true;
 }
 
-/// Where the two disagree in a file, a bit was turned in one of them: a newer program writes both.
+/// Where the two disagree in a file, a bit was turned in one of them: a newer program writes both. The greater one is
+/// right, or the tables of the step between are not there and are made (make_later_tables).
 int Journal::Database::schema_version() {
   const int in_meta = number_of(meta("schema_version"));
   if (!is_file()) return in_meta;
   int in_header = 0;
   sql << "PRAGMA user_version", into(in_header);
-  if (in_header < 1) return in_meta;  // version 1 left it alone
-  return in_meta < 1 ? in_header : std::min(in_meta, in_header);
+  const auto is_known = [](int version) { return version >= 1 && version <= kJournalSchemaVersion; };
+  if (!is_known(in_header)) return in_meta < 1 ? in_header : in_meta;  // version 1 left it alone
+  return is_known(in_meta) ? std::max(in_meta, in_header) : in_header;
 }
 
 void Journal::Database::check_schema() {
@@ -171,6 +176,7 @@ void Journal::Database::make_later_tables() {
   if (is_gone("alarms")) sql << kAlarms;
   if (is_gone("anchors")) sql << kAnchors;
   if (is_gone("acts")) make_acts_table(sql);
+  if (!has_table("packed_outputs")) sql << kPackedOutputs;  // nothing is lost with it
   if (has_all_tables && !gone.empty())
     tell_of_journal("what the journal kept was removed from it, table " + gone +
                     ": restore a backup; sealwatch audit shows what is missing of acts");

@@ -155,7 +155,8 @@ std::map<std::string, std::vector<Message>> by_asset(Process& process) {
 
 /// Of data acquisition, which is given back the last word on each test alone, and of a layer that is given all: killed at every step and started again, with its past recalled at once or as late as may be.
 template <class MakeLayer>
-void expect_the_same_however_killed(const MakeLayer& make_layer, const std::vector<RawSamples>& blocks) {
+void expect_the_same_however_killed(const MakeLayer& make_layer, const std::vector<RawSamples>& blocks,
+                                    bool is_packed = false) {
   int steps = 0;
   const auto run = [&](int fatal_step, const RunnerOptions& options) {
     const Place place;
@@ -184,6 +185,9 @@ void expect_the_same_however_killed(const MakeLayer& make_layer, const std::vect
     process = std::make_unique<Process>(network, make_layer, place.connection(), Fate(), options);
     process->start();
     for (int k = 0; k < 3; ++k) process->step();
+    int packed = 0;
+    soci::session(place.connection()) << "SELECT count(*) FROM packed_outputs", soci::into(packed);
+    EXPECT_EQ(packed > 0, is_packed);
     return by_asset(*process);
   };
   const auto undisturbed = run(-1, fast_options());
@@ -196,6 +200,10 @@ void expect_the_same_however_killed(const MakeLayer& make_layer, const std::vect
 
 TEST(RecallAfterKills, OfALayerThatIsGivenAllComesToTheSame) {
   expect_the_same_however_killed([] { return std::make_unique<CuttingLayer>(); }, blocks_of_tests(3, {"A", "B"}));
+}
+
+TEST(RecallAfterKills, OfALongerPastThatIsPackedComesToTheSame) {
+  expect_the_same_however_killed([] { return std::make_unique<CuttingLayer>(); }, blocks_of_tests(10, {"A"}), true);
 }
 
 /// Two blocks a test; asset B's second test is cut by its third, A's last is played twice.

@@ -350,11 +350,11 @@ TEST_P(JournalTest, AJournalOfAnotherServiceIsRefused) {
 
 TEST_P(JournalTest, ANewerSchemaIsRefusedWithWhatToDo) {
   open();
-  place_.execute("UPDATE meta SET value = '5' WHERE name = 'schema_version'");
-  if (GetParam() == "sqlite3") place_.execute("PRAGMA user_version = 5");
+  place_.execute("UPDATE meta SET value = '6' WHERE name = 'schema_version'");
+  if (GetParam() == "sqlite3") place_.execute("PRAGMA user_version = 6");
   const Result<Journal> journal = Journal::open(place_.connection(), "state_detection");
   ASSERT_FALSE(journal.has_value());
-  EXPECT_THAT(journal.error().describe(), HasSubstr("'5': must be at most 4, the version that this program knows"));
+  EXPECT_THAT(journal.error().describe(), HasSubstr("'6': must be at most 5, the version that this program knows"));
   EXPECT_THAT(journal.error().advice, HasSubstr("install the sealwatch that wrote this journal"));
 }
 

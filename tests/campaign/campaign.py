@@ -881,7 +881,7 @@ class Campaign:
         # Each with how many services say that they read all of it.
         changes = {"packed": (None, 0), "not packed": ("DELETE FROM packed_outputs", 0),
                    "damaged": ("UPDATE packed_outputs SET body = 'A' || body", len(SERVICES)),
-                   "another's": ("UPDATE packed_outputs SET layout = 'another'", len(SERVICES))}
+                   "of another build": ("UPDATE packed_outputs SET layout = 'another'", len(SERVICES))}
         results = {name: self.gone_on(base, name.replace(" ", "-"), rest, *change) for name, change in changes.items()}
         for name, found in results.items():
             if difference := differences(results["not packed"], found):
@@ -890,7 +890,7 @@ class Campaign:
 
     def gone_on(self, base, name, files, change, refusals):
         """The results of the rest of the tests on a copy of the state, with a change of what is packed in it."""
-        state = self.folder / name
+        state = self.folder / f"state-{name}"
         shutil.copytree(base, state)
         shutil.rmtree(state / "log")
         for service in SERVICES:

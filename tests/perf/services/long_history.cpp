@@ -113,7 +113,8 @@ class LongJournal {
     sql_ << "PRAGMA journal_mode = OFF", into(answer);
     for (const char* setting : {"synchronous = OFF", "cache_size = -400000"}) sql_ << std::string("PRAGMA ") + setting;
     sql_ << "BEGIN";
-    for (const char* table : {"outputs", "inputs", "positions", "alarms", "packed_outputs"}) sql_ << std::string("DELETE FROM ") + table;
+    for (const char* table : {"outputs", "inputs", "positions", "alarms", "packed_outputs"})
+      sql_ << std::string("DELETE FROM ") + table;
     statements_.emplace(sql_);
   }
 

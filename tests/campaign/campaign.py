@@ -45,7 +45,8 @@ MOST_GROWTH_MB = 100.0      # of a service under a flood: its queues and inboxes
 MOST_MORE_PAGES = 100       # beside twice as many, for a statement of a start on a longer history
 LONGEST_START_S = 20.0      # until all services have their past, after whatever history
 # What is done for so long and no longer: assets are recalled and their last word published, indexes looked at.
-BOUNDED = ("packed_outputs", "FROM outputs WHERE asset_id =", "FROM outputs WHERE ordinal", "FROM outputs WHERE sequence", "NOT INDEXED")
+BOUNDED = ("packed_outputs", "FROM outputs WHERE asset_id =", "FROM outputs WHERE ordinal",
+           "FROM outputs WHERE sequence", "NOT INDEXED")
 FINDING = re.compile(r"\w+Sanitizer: .*|runtime error: .*")  # of a build with sanitizers, whatever its exit status
 TABLES = {"inputs": ["message_id", "payload", "consumed", "pst_id"], "outputs": ["payload", "asset_id", "checksum"],
           "positions": ["sequence", "writer_id"], "quarantine": ["reason"], "acts": ["who", "hash"],

@@ -529,10 +529,12 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     if (!last && !in_time("what the laws found before leave")) return naming;
     if (!last) return fail(last.error());
     naming.last = std::move(*last);
-    if (from.is_start && in_time("other laws in place of those found with held states")) {
+    const char* const again =
+        from.is_start ? "other laws in place of those found with held states" : "other laws in place of the one found";
+    if (const bool asks = in_time(again); asks && from.is_start) {
       another_law_for_each(naming, data, options);
       one_law_for_several(naming, data, options);
-    } else if (in_time("other laws in place of those found before, with what is unknown now")) {
+    } else if (asks) {
       compete_again(naming, data, options);
     }
   }

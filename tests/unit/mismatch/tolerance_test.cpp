@@ -156,6 +156,20 @@ TEST(Tolerance, ASensorThatIsFurtherOffIsAFault) {
   EXPECT_EQ(found->effects[0].what.element, "sensor:flow");
 }
 
+// Far off: simulations held to what the sensor said would ask laws of the input for it.
+TEST(Tolerance, ASensorThatIsFarOffIsAskedBeforeSimulationsAreHeldToIt) {
+  AssetConfig truth = actuator();
+  truth.sensors.at("shaft_speed").offset_error = 15.0;
+  std::set<std::string> steps;
+  const auto found = explain(actuator(), tests_of(truth), {}, {},
+                             [&](std::string_view step, double /*share*/) { steps.emplace(step); });
+  ASSERT_TRUE(found) << found.error().describe();
+  ASSERT_EQ(found->effects.size(), 1U) << found->summary;
+  EXPECT_EQ(found->effects[0].what.id, "sensor_bias");
+  EXPECT_EQ(found->effects[0].what.element, "sensor:shaft_speed");
+  EXPECT_FALSE(steps.contains("setting out from the recorded states"));
+}
+
 AssetConfig drifting(double towards, double time_s) {
   AssetConfig truth = actuator();
   truth.physics.push_back(

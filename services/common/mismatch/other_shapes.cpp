@@ -81,7 +81,10 @@ std::vector<std::vector<LawStart>> laws_of(const std::string& element, const Scr
         std::ranges::count(starts, candidate.law, [](const auto& one) { return one.front().effect.law; });
     const long most = candidate.law->limit.empty() ? 1 : kStartsOfRich;
     if (candidate.element == element && known < most && starts.size() < kSingleLaws)
-      starts.push_back({{{candidate.law, element}, usual_size(candidate, variant->point)}});
+      starts.push_back({{.effect = {candidate.law, element},
+                         .parameters = usual_size(candidate, variant->point),
+                         .promised = variant->gain,
+                         .asked_at = asked.misfit}});
   }
   return starts;
 }
@@ -122,15 +125,36 @@ bool is_at_the_noise(const Naming& naming, const ExplainOptions& options) {
   return model.misfit < kLeft * model.residuals && !differs(naming.last.p_value, model, options.false_alarm_rate);
 }
 
-// Laws that would miss by far more in the place of an effect.
-void leave_out_far_off(std::vector<LawStart>& asked, const Trial& best, std::size_t slot, const Data& data,
-                       const ExplainOptions& options) {
-  const auto near = stand_ins(best, {slot}, candidates_of(asked, *best.model), data, options);
-  std::erase_if(asked, [&](const LawStart& law) {
-    return std::ranges::none_of(near, [&](const std::vector<LawStart>& one) {
-      return one.front().effect.law == law.effect.law && one.front().effect.element == law.effect.element;
-    });
-  });
+// Starts of refits with another law in the place of one, elsewhere. Near the noise the linear model of the whole tells
+// which may do as well; further off those are asked that promise most beside the other laws.
+struct InPlace {
+  const Trial* from = nullptr;
+  std::vector<std::vector<LawStart>> starts;
+  RefitOptions options;
+};
+InPlace elsewhere_in_place_of(std::size_t slot, const Naming& naming) {
+  const Replacement replacement(naming.best, {slot});
+  std::vector<StandIn> near;
+  for (const Candidate& candidate : naming.last.candidates) {
+    if (candidate.element == naming.best.effects[slot].element) continue;
+    auto stand_in = replacement.stand_in(naming.last, {candidate.law, candidate.element});
+    if (stand_in && replacement.may_do_as_well(*stand_in)) near.push_back(std::move(*stand_in));
+  }
+  std::ranges::stable_sort(near, {}, &StandIn::rise);
+  InPlace in_place{&naming.best, {}, {.in_place_of = {slot}, .sized = true}};
+  for (StandIn& stand_in : near)
+    if (in_place.starts.size() < kOtherLaws) in_place.starts.push_back({std::move(stand_in.start)});
+  return in_place;
+}
+InPlace elsewhere_beside(const Trial& fewer, std::size_t slot, const Naming& naming, const Data& data,
+                         const ExplainOptions& options) {
+  InPlace in_place{&fewer, {}, {}};
+  const auto left = screen(*fewer.model, data, {.draws = 1, .seed = options.seed, .threads = options.threads});
+  if (!left) return in_place;
+  for (LawStart& start : ranked_laws(causes_in(*left, *fewer.model), kOtherLaws + kSingleLaws))
+    if (start.effect.element != naming.best.effects[slot].element && in_place.starts.size() < kOtherLaws)
+      in_place.starts.push_back({std::move(start)});
+  return in_place;
 }
 
 std::string laws_in_words(const std::vector<Effect>& effects) {
@@ -262,22 +286,17 @@ void from_other_shapes(Naming& naming, const Trial& before, const Screening& ask
 
 void another_law_for_each(Naming& naming, const Data& data, const ExplainOptions& options) {
   if (naming.best.effects.size() < 2 || is_at_the_noise(naming, options)) return;
+  const bool near = excess(*naming.best.model) <= kGross;
   std::vector<Trial> trials;
   for (std::size_t slot = 0; slot + 1 < naming.best.effects.size(); ++slot) {
+    InPlace in_place = near ? elsewhere_in_place_of(slot, naming) : InPlace{};
+    if (near && in_place.starts.empty()) continue;
     const std::optional<Trial> fewer = without_law(naming, naming.best, slot, data, options.threads);
     if (!fewer) continue;
     naming.trials.push_back(*fewer);
-    const auto left = screen(*fewer->model, data, {.draws = 1, .seed = options.seed, .threads = options.threads});
-    if (!left) continue;
-    std::vector<LawStart> asked;
-    for (LawStart& start : ranked_laws(causes_in(*left, *fewer->model), kOtherLaws + kSingleLaws))
-      if (start.effect.element != naming.best.effects[slot].element && asked.size() < kOtherLaws)
-        asked.push_back(std::move(start));
-    const bool near = excess(*naming.best.model) <= kGross;  // there the linear model tells what comes nowhere near
-    if (near) leave_out_far_off(asked, naming.best, slot, data, options);
-    std::vector<std::vector<LawStart>> starts;
-    for (LawStart& start : asked) starts.push_back({std::move(start)});
-    std::vector<Trial> others = refit(*fewer, starts, data, options.threads, {.to_beat = naming.best.model->misfit});
+    if (!near) in_place = elsewhere_beside(*fewer, slot, naming, data, options);
+    in_place.options.to_beat = naming.best.model->misfit;
+    std::vector<Trial> others = refit(*in_place.from, in_place.starts, data, options.threads, in_place.options);
     for (Trial& trial : causes_among(std::move(others), *fewer)) trials.push_back(std::move(trial));
   }
   naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
@@ -313,8 +332,8 @@ void one_law_for_several(Naming& naming, const Data& data, const ExplainOptions&
     for (std::size_t k = 0; k < naming.best.effects.size(); ++k)
       if (naming.best.effects[k].element == element) several.push_back(k);
     if (several.size() < 2) continue;
-    for (Trial& trial :
-         refit(naming.best, laws_of(element, naming.first), data, options.threads, {.in_place_of = several}))
+    for (Trial& trial : refit(naming.best, laws_of(element, naming.first), data, options.threads,
+                              {.in_place_of = several, .to_beat = naming.best.model->misfit}))
       trials.push_back(std::move(trial));
   }
   const Trial* best = best_of(trials, smallest_dispersion(trials, *naming.best.model));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/verdict.hpp"
@@ -45,7 +46,10 @@ PemPoint beside(const Screening& screening, const Variant& variant, std::span<co
 
 LawStart start_of(const Screening& screening, const Variant& variant, bool in_proportion = false) {
   const Candidate& candidate = screening.candidates[variant.candidate];
-  LawStart start{.effect = {candidate.law, candidate.element}, .parameters = candidate.grid[variant.point]};
+  LawStart start{.effect = {candidate.law, candidate.element},
+                 .parameters = candidate.grid[variant.point],
+                 .promised = variant.gain,
+                 .asked_at = screening.misfit};
   const std::vector<std::size_t> strengths = strengths_of(*candidate.law);
   for (std::size_t k = 0; k < strengths.size(); ++k) {
     double& value = start.parameters[strengths[k]];
@@ -85,6 +89,7 @@ std::vector<const Variant*> best_of_each(const Screening& screening) {
 LawStart start_with(const Screening& screening, Variant variant, std::vector<double> strengths) {
   variant.strength = std::move(strengths);
   variant.back.clear();
+  variant.gain = std::numeric_limits<double>::infinity();
   return start_of(screening, variant, true);
 }
 
@@ -167,6 +172,7 @@ std::vector<std::vector<LawStart>> ranked_pairs(const Screening& screening, doub
     if (starts.size() == kPairs || pair.gain < singles.front()->gain + std::max(kWorthAnother, kPairAhead * misfit))
       break;
     starts.push_back({start_of(screening, *pair.a), start_of(screening, *pair.b)});
+    for (LawStart& start : starts.back()) start.promised = pair.gain;
   }
   return starts;
 }

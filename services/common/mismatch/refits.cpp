@@ -24,10 +24,9 @@ constexpr std::size_t kAhead = 2;        // refits that come first: what they co
 // In a gross misfit a refit does not go on that is further off than so many times the best, or than so many times what
 // its linear model promises.
 constexpr double kHopeful = 10.0;
-constexpr double kNearer = 0.5;  // nor does any where a round leaves more than this share of the distance to the best
-constexpr double kFar = 100.0;   // times the noise: a model that misses by more says nothing of sizes
-constexpr double kDecidesNothing = 0.01;  // of the misfit: in a gross one a first round tells laws apart by multiples
-constexpr double kSmaller = 0.1;          // strength with which one starts again that set out too far
+constexpr double kNearer = 0.5;   // nor does any where a round leaves more than this share of the distance to the best
+constexpr double kFar = 100.0;    // times the noise: a model that misses by more says nothing of sizes
+constexpr double kSmaller = 0.1;  // strength with which one starts again that set out too far
 
 // Whether a strength of the laws added last has come to an end of its range: nothing depends on their shapes there.
 bool came_to_an_end(const FittedModel& model, const std::vector<LawStart>& added) {
@@ -211,6 +210,7 @@ class Refits {
 
   // With a strength of nothing a law leaves what was there before: one that leaves more set out too far.
   [[nodiscard]] Refit one(const std::vector<LawStart>& added, int threads) const {
+    if (!may_come_to_bound(added.front())) return {};
     Refit refit = start(added, 1.0, threads);
     const bool cut = refit.model != nullptr && refit.model->optimum.out_of_reach;
     const bool worse = options_.again_smaller && !first_ && !cut && options_.in_place_of.empty() &&
@@ -247,6 +247,10 @@ class Refits {
     if (!model && !beside.own.empty()) model = set_out({});  // where the linear model leads, nothing can be simulated
     if (model) refit.model = std::make_shared<FittedModel>(std::move(*model));
     return refit;
+  }
+
+  [[nodiscard]] bool may_come_to_bound(const LawStart& start) const {
+    return 0.5 * (start.asked_at - kOptimisticOfPromise * start.promised) <= bound_.cost;
   }
 
   // Each as long as it may come near the best so far.
@@ -324,6 +328,14 @@ Trial polished(Trial trial, const Data& data, int threads) {
     trial.model = std::make_shared<const FittedModel>(std::move(*further));
   }
   return trial;
+}
+
+Result<FittedModel> fit_baseline(const AssetConfig& asset, const Data& data, const FittedModel& from, int threads) {
+  Result<FittedModel> there = fit_model(asset, data, &from, threads, 0);
+  if (!there) return there;
+  const SearchBound little_is_enough{.decides_nothing = kDecidesNothing};
+  return continue_fit(*there, data, threads, kSearchIterations,
+                      excess(*there) > kGross ? little_is_enough : SearchBound{});
 }
 
 std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawStart>>& laws, const Data& data,

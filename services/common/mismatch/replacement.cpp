@@ -120,6 +120,7 @@ PemPoint Replacement::change_beside(const Screening& of_whole, const std::vector
 }
 
 bool Replacement::may_do_as_well(const StandIn& stand_in) const { return stand_in.rise < kOff * near_; }
+bool Replacement::may_go() const { return change_.dot(gram_ * change_) < kOff * near_; }
 
 std::vector<std::vector<LawStart>> stand_ins(const Trial& whole, const std::vector<std::size_t>& out,
                                              std::vector<Candidate> laws, const Data& data,

@@ -45,6 +45,8 @@ class Replacement {
 
   /// Whether its refit may end near the whole model, even if the rise is a tenth of what the linear model says.
   [[nodiscard]] bool may_do_as_well(const StandIn& stand_in) const;
+  /// The same of nothing in their place.
+  [[nodiscard]] bool may_go() const;
 
  private:
   Replacement(const FittedModel& whole, const Going& going);

@@ -422,6 +422,7 @@ Result<Screening> screen_candidates(const FittedModel& model, const Data& data, 
   screening.gradient = screening.block_scores.colwise().sum();
   if (projected.all.gram.rows() > 0)
     find_leakage_shifts(screening, model, projected.all.gram, projected.all.cross.middleCols(1, size));
+  screening.misfit = model.misfit - (model.optimum.converged ? 0.0 : 2.0 * model.optimum.promised);
   evaluate(screening, projected.raw_norm.head(size), stacked(projected.left, &Left::grams),
            resolution_of(data, model.problem.recordings.front().simulation->plant()));
   calibrate(screening, options);

@@ -71,6 +71,7 @@ struct Screening {
   Eigen::MatrixXd shared_like_law = {};
   std::vector<Eigen::MatrixXd> own_like_law = {};
   HeldUnknowns held = {};
+  double misfit = 0.0;            ///< of the model, once its own search has ended as its linear model promises
   double p_value = 1.0;           ///< that there is nothing but noise
   double effective_number = 1.0;  ///< of independent laws in the catalogue, points passed over included
   std::size_t best = 0;           ///< variant with the largest score

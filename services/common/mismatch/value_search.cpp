@@ -67,7 +67,7 @@ Result<Naming> beside_values(const Naming& naming, const std::vector<KnownValue>
       asset = with_free(std::move(asset), value);
       asset.parameters.at(value.name).value = from.model->asset.parameters.at(value.name).value;
     }
-    Result<FittedModel> alone = fit_model(asset, data, from.model.get(), options.threads);
+    Result<FittedModel> alone = fit_baseline(asset, data, *from.model, options.threads);
     if (!alone) return fail(alone.error());
     baseline = std::make_shared<const FittedModel>(std::move(*alone));
   }

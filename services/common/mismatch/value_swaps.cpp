@@ -256,6 +256,8 @@ std::vector<ValueSwap> values_in_place_of(const SwapQuestion& of) {
   const auto models = in_parallel<std::shared_ptr<const FittedModel>>(promises.size(), of.threads, [&](std::size_t k) {
     const SearchBound bound{.cost = 0.5 * limit(promises[k]),
                             .optimism = excess(found) > kGross ? kGrossOptimism : kOptimistic};
+    const double at_best = all->misfit - kOptimisticOfPromise * (all->misfit - promises[k].misfit);
+    if (at_best > limit(promises[k])) return std::shared_ptr<const FittedModel>();
     std::optional<FittedModel> model = fitted(of, promises[k], *all, bound);
     return model ? std::make_shared<const FittedModel>(std::move(*model)) : nullptr;
   });

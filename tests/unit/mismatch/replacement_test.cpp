@@ -56,5 +56,30 @@ TEST(Replacement, ElsewhereIsAsFarOffAsItsRefitWithinATenth) {
   EXPECT_THAT(starts, testing::IsEmpty());
 }
 
+TEST(Replacement, OfNothingALawThatTakesMuchDoesNotGo) {
+  const Leaking leaking;
+  EXPECT_FALSE(Replacement(leaking.whole, {0}).may_go());
+  const Law& spring = **find_law("spring_load", {"k"});
+  const AssetConfig more = with_law(leaking.truth, spring, "piston", std::vector{1.0});
+  const Trial idle{{{&leak(), "chamber_a"}, {&spring, "piston"}},
+                   std::make_shared<const FittedModel>(fit_model(more, leaking.data, nullptr, 2).value())};
+  EXPECT_TRUE(Replacement(idle, {1}).may_go());
+  EXPECT_FALSE(Replacement(idle, {0}).may_go());
+}
+
+TEST(Refit, DoesNotSetOutWhereThreeTimesItsPromiseIsOutOfReach) {
+  const Leaking leaking;
+  const LawStart spring{{*find_law("spring_load", {"k"}), "piston"}, {1e4}};
+  const double here = leaking.whole.model->misfit;
+  const auto refits = [&](double promised) {
+    LawStart start = spring;
+    start.promised = promised;
+    start.asked_at = here;
+    return refit(leaking.whole, {{start}}, leaking.data, 2, {.to_beat = here - 1000.0}).size();
+  };
+  EXPECT_EQ(refits(100.0), 0U);
+  EXPECT_EQ(refits(400.0), 1U);
+}
+
 }  // namespace
 }  // namespace sealwatch::mismatch

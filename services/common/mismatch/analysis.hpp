@@ -66,15 +66,15 @@ class Analysis {
   // Whether one value of the asset file leaves no gross misfit. Set out from the recorded states, several laws would fill
   // its place.
   [[nodiscard]] bool a_value_ends_it(const Screening& first) const;
-  // The same of one law, where the linear model promises that: a sensor's, to whose course states would be held.
-  [[nodiscard]] bool a_law_ends_it(const Screening& first) const;
+  // Refits of laws of which the linear model promises the same: a sensor's, to whose course states would be held.
+  [[nodiscard]] std::vector<Trial> laws_that_may_end_it(const Screening& first) const;
   // Sensors that were off beside what differs are so in common; also where the time to search is over.
   Result<Screening> look_with_inexact_sensors(const std::vector<KnownValue>& known, const ScreeningOptions& options);
   // Also where the time to search is over: it is what is told then.
   std::optional<Trial> found_in_common(const OwnValues& own);
-  // Laws that all recordings have in common, beginning with `from`, beside sensors that are exact or not. `known`: the
-  // baseline's screening.
-  Result<Naming> look_in_common(const Trial& from, const ExplainOptions& options, const Screening* known);
+  // Laws that all recordings have in common, beginning with `from`, beside sensors that are exact or not. `known`: of
+  // the baseline; null: nothing.
+  Result<Naming> look_in_common(const Trial& from, const ExplainOptions& options, const KnownOfBaseline* known);
   // Sensors that are taken for exact so far.
   [[nodiscard]] std::vector<KnownValue> unknown_sensors() const;
   // Laws beside a parameter of which each recording has its own; false where one for all does as well.

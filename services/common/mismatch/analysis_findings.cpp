@@ -93,7 +93,8 @@ bool Analysis::more_than_form(const LawAt& small, const LawAt& large) {
   const Trial fewer = without(best_, slot, to_prove());
   const LawStart one{best_.effects[slot], parameters_in(best_.effects[slot], best_.model->asset)};
   const bool more =
-      !mismatch::more_than_form(*fewer.model, best_.effects[slot_of(large)], {one}, prepared(fit_), options_).empty();
+      !mismatch::more_than_form(*fewer.model, {&best_.effects[slot_of(large)], 1}, {one}, prepared(fit_), options_)
+           .empty();
   time_.allow(1.0);
   return more;
 }

@@ -105,14 +105,17 @@ Status Analysis::look_from(std::optional<Trial> from) {
   if (own_) fit_.may_differ.clear();  // nothing else was found to differ beside it
   if (common) from = std::move(common);
   if (own_) tell("looking again, with one value for all tests", 0.5);
-  if (!from && options.maximum_laws > 0 && excess(*baseline_) > kGross && !a_value_ends_it(*first) &&
-      !a_law_ends_it(*first)) {
+  KnownOfBaseline known{std::move(*first)};
+  const bool asks = !from && options.maximum_laws > 0 && excess(*baseline_) > kGross && !a_value_ends_it(known.first);
+  if (asks) known.tried = laws_that_may_end_it(known.first);
+  const auto ends_it = [](const Trial& trial) { return excess(*trial.model) <= kGross; };
+  if (asks && std::ranges::none_of(known.tried, ends_it)) {
     tell("setting out from the recorded states", 0.2);
     HeldStart held = start_from_held(*baseline_, prepared(fit_), options);
     from = std::move(held.trial);
     if (from && held.was_cut) time_.add_not_asked({"further laws with the simulation held to the recorded states"});
   }
-  Result<Naming> naming = look_in_common(from.value_or(Trial{{}, baseline_}), options, &*first);
+  Result<Naming> naming = look_in_common(from.value_or(Trial{{}, baseline_}), options, &known);
   if (!naming) return fail(naming.error());
   if (!naming->differs_in.empty()) {
     if (look_beside_what_differs(*naming, options)) return {};
@@ -150,14 +153,13 @@ bool Analysis::a_value_ends_it(const Screening& first) const {
   return value_that_ends_it(naming, prepared(fit_), options_.threads).has_value();
 }
 
-bool Analysis::a_law_ends_it(const Screening& first) const {
+std::vector<Trial> Analysis::laws_that_may_end_it(const Screening& first) const {
   constexpr std::size_t kAsked = 2;
   constexpr double kLeft = 0.1;  // of the misfit: more is left by most laws that the linear model favours
   std::vector<std::vector<LawStart>> starts;
   for (LawStart& start : ranked_laws(first, kAsked)) starts.push_back({std::move(start)});
-  if (starts.empty() || baseline_->misfit - by_gain(first).front()->gain > kLeft * baseline_->misfit) return false;
-  const std::vector<Trial> trials = refit({{}, baseline_}, starts, prepared(fit_), options_.threads);
-  return std::ranges::any_of(trials, [](const Trial& trial) { return excess(*trial.model) <= kGross; });
+  if (starts.empty() || baseline_->misfit - by_gain(first).front()->gain > kLeft * baseline_->misfit) return {};
+  return refit({{}, baseline_}, starts, prepared(fit_), options_.threads);
 }
 
 Result<Screening> Analysis::look_with_inexact_sensors(const std::vector<KnownValue>& known,
@@ -180,7 +182,8 @@ std::optional<Trial> Analysis::found_in_common(const OwnValues& own) {
   return laws;
 }
 
-Result<Naming> Analysis::look_in_common(const Trial& from, const ExplainOptions& options, const Screening* known) {
+Result<Naming> Analysis::look_in_common(const Trial& from, const ExplainOptions& options,
+                                        const KnownOfBaseline* known) {
   Data data = prepared(fit_);
   data.sensors = unknown_sensors();
   Result<Naming> naming = name_effects(baseline_, data, options, progress_, from, known);
@@ -272,7 +275,7 @@ Result<Naming> Analysis::beside_inexact_sensors(const Naming& found, const Expla
   const auto fitted = [&](const FittedModel& from) -> Result<std::shared_ptr<const FittedModel>> {
     if (found.with_sensors && &from == laws.model.get()) return found.with_sensors;
     if (found.baseline_with_sensors && &from == baseline_.get()) return found.baseline_with_sensors;
-    Result<FittedModel> model = fit_model(from.asset, prepared(inexact), &from, options_.threads);
+    Result<FittedModel> model = fit_baseline(from.asset, prepared(inexact), from, options_.threads);
     if (!model) return fail(model.error());
     return std::make_shared<const FittedModel>(std::move(*model));
   };

@@ -136,7 +136,8 @@ void Analysis::look_on_from(const Naming& laws) {
   instead_of_ = 0;
   fit_.fixed.clear();
   fit_.may_differ.clear();
-  Result<Naming> further = look_in_common(laws.best, options_, &laws.first);
+  const KnownOfBaseline known{laws.first};
+  Result<Naming> further = look_in_common(laws.best, options_, &known);
   naming_ = further ? std::move(*further) : laws;
   if (further && naming_.baseline == laws.baseline)
     naming_.trials.insert(naming_.trials.begin(), laws.trials.begin(), laws.trials.end());
@@ -152,20 +153,29 @@ bool Analysis::take_beside_values(const WrongDatasheet& wrong, const std::vector
   if (wrong.with.effects.empty() || is_in_place_of_what_is_missing(*best_.model, *wrong.with.model)) return false;
   AssetConfig asset = baseline_->asset;
   for (const AssetValue& value : wrong.values.front()) asset = with_free_value(std::move(asset), value.name);
-  Result<FittedModel> alone = fit_model(asset, prepared(fit_), wrong.with.model.get(), options_.threads);
+  Result<FittedModel> alone = fit_baseline(asset, prepared(fit_), *wrong.with.model, options_.threads);
   if (!alone) return false;
   tell("looking again, beside a value of the asset file", 0.7);
   const ScreeningOptions screening{.seed = options_.seed, .threads = options_.threads};
-  const Result<Screening> first = screen(*alone, prepared(fit_), screening);
+  Result<Screening> first = screen(*alone, prepared(fit_), screening);
   if (!first) return false;
+  const KnownOfBaseline of_values{std::move(*first)};
   time_.allow(kSearchShare);
   auto naming = name_effects(std::make_shared<const FittedModel>(std::move(*alone)), prepared(fit_), options_,
-                             progress_, wrong.with, &*first);
+                             progress_, wrong.with, &of_values);
   if (!naming || !naming->differs_in.empty() || naming->best.effects.empty()) return false;
   const auto known = [&](const Effect& effect) { return is_among(effect, best_.effects); };
+  if (!std::ranges::all_of(naming->best.effects,
+                           known)) {  // what stands in one of the explanations only is not claimed
+    time_.allow(1.0);                 // it is what is told
+    Result<Screening> left = screen(*wrong.with.model, prepared(fit_), screening);
+    time_.allow(kSearchShare);
+    if (!left) return false;
+    naming->best = wrong.with;
+    naming->last = std::move(*left);
+  }
   const double phi = std::min(dispersion(*naming->best.model), dispersion(*best_.model));
-  if (!std::ranges::all_of(naming->best.effects, known) ||
-      criterion(*naming->best.model, phi) > criterion(*best_.model, phi) ||
+  if (criterion(*naming->best.model, phi) > criterion(*best_.model, phi) ||
       values_off(*naming->best.model, asset_).empty())
     return false;
   std::vector<std::string> instead;

@@ -28,10 +28,12 @@ double together(const Screening& screening, const std::vector<Eigen::Index>& col
 
 }  // namespace
 
-std::vector<LawStart> more_than_form(const FittedModel& without, const Effect& large, std::vector<LawStart> small,
-                                     const Data& data, const ExplainOptions& options) {
-  std::erase_if(small, [&](const LawStart& law) { return law.effect.element == large.element; });
+std::vector<LawStart> more_than_form(const FittedModel& without, std::span<const Effect> large,
+                                     std::vector<LawStart> small, const Data& data, const ExplainOptions& options) {
   if (small.empty()) return {};
+  const auto is_of_large = [&](const Candidate& law) {
+    return std::ranges::find(large, law.element, &Effect::element) != large.end();
+  };
   std::vector<Candidate> laws;
   for (Candidate& law : find_candidates(*without.problem.recordings.front().simulation, {}, Laws::all)) {
     for (const LawStart& one : small) {
@@ -39,7 +41,7 @@ std::vector<LawStart> more_than_form(const FittedModel& without, const Effect& l
       laws.push_back(law);
       laws.back().grid = {one.parameters};
     }
-    if (law.element == large.element) laws.push_back(std::move(law));
+    if (is_of_large(law)) laws.push_back(std::move(law));
   }
   const auto screening =
       screen_laws(without, std::move(laws), data, {.draws = 1, .seed = options.seed, .threads = options.threads});
@@ -51,15 +53,17 @@ std::vector<LawStart> more_than_form(const FittedModel& without, const Effect& l
         columns.insert(columns.end(), variant.columns.begin(), variant.columns.end());
     return columns;
   };
-  const auto forms = columns_of([&](const Candidate& law) { return law.element == large.element; });
-  const double by_forms = together(*screening, forms);
   std::erase_if(small, [&](const LawStart& one) {
     std::vector<Eigen::Index> columns = columns_of([&](const Candidate& law) {
       return law.law == one.effect.law && law.element == one.effect.element && law.grid.front() == one.parameters;
     });
+    const std::vector<Eigen::Index> forms = columns_of([&](const Candidate& law) {
+      const bool is_the_same = law.law->id == one.effect.law->id && law.element == one.effect.element;
+      return is_of_large(law) && !is_the_same;
+    });
     const double alone = together(*screening, columns);
     columns.insert(columns.end(), forms.begin(), forms.end());
-    const double beyond = together(*screening, columns) - by_forms;
+    const double beyond = together(*screening, columns) - together(*screening, forms);
     return !(beyond > kWorthAnother * dispersion(without) && beyond > kMostly * alone);
   });
   return small;

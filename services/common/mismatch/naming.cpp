@@ -5,6 +5,7 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "services/common/core/in_parallel.hpp"
 #include "services/common/mismatch/candidates.hpp"
 #include "services/common/mismatch/datasheet.hpp"
+#include "services/common/mismatch/form_error.hpp"
 #include "services/common/mismatch/one_shape.hpp"
 #include "services/common/mismatch/other_shapes.hpp"
 #include "services/common/mismatch/own_gains.hpp"
@@ -73,11 +75,22 @@ SearchBound worth_dropping_to(const Naming& naming) {
   return {.cost = 0.5 * phi * (criterion(*naming.best.model, phi) + worth_keeping(naming)), .optimism = kOptimistic};
 }
 
+// Laws of the best that may not be needed. In a gross misfit the linear model does not tell.
+std::vector<std::size_t> may_be_needless(const Trial& best) {
+  std::vector<std::size_t> slots(best.effects.size());
+  std::iota(slots.begin(), slots.end(), std::size_t{0});
+  if (excess(*best.model) <= kGross)
+    std::erase_if(slots, [&](std::size_t slot) { return !Replacement(best, {slot}).may_go(); });
+  return slots;
+}
+
 // The best without each of its laws in turn, where that can be simulated and is worth its search.
 std::vector<Trial> each_with_one_less(const Naming& naming, const Data& data, int threads) {
   const Trial& best = naming.best;
   const SearchBound bound = worth_dropping_to(naming);
-  std::vector<Trial> all = in_parallel<Trial>(best.effects.size(), threads, [&](std::size_t out) {
+  const std::vector<std::size_t> slots = may_be_needless(best);
+  std::vector<Trial> all = in_parallel<Trial>(slots.size(), threads, [&](std::size_t k) {
+    const std::size_t out = slots[k];
     Trial fewer{.effects = best.effects, .model = nullptr};
     fewer.effects.erase(fewer.effects.begin() + static_cast<std::ptrdiff_t>(out));
     AssetConfig asset = best.model->asset;
@@ -112,6 +125,12 @@ double most_promised(const Screening& screening) {
   return order.empty() ? 0.0 : order.front()->gain;
 }
 
+// Whether what the laws found leave is so little that their forms may take it.
+bool forms_may_take_it(const Naming& naming) {
+  return !naming.best.effects.empty() &&
+         leaves_its_form_at_most(*naming.baseline, *naming.best.model, most_promised(naming.last));
+}
+
 // Whether that is what another law must bring.
 bool promising(const Screening& screening, const FittedModel& model) {
   const double penalty = std::log(model.residuals);  // of one more parameter
@@ -142,6 +161,23 @@ std::vector<std::vector<LawStart>> closed_forms_for(const Trial& from, const Fit
   return starts;
 }
 
+// The same beside the laws found. Where the forms of these may take what is left, closed forms at their elements are
+// such forms, and no further law.
+std::vector<std::vector<LawStart>> closed_forms_beside(const Naming& naming, const Data& data,
+                                                       const ExplainOptions& options) {
+  std::vector<std::vector<LawStart>> starts = closed_forms_for(naming.best, *naming.baseline, data, options);
+  if (!forms_may_take_it(naming)) return starts;
+  std::vector<LawStart> elsewhere;
+  for (std::vector<LawStart>& start : starts)
+    if (std::ranges::find(naming.best.effects, start.front().effect.element, &Effect::element) ==
+        naming.best.effects.end())
+      elsewhere.push_back(std::move(start.front()));
+  starts.clear();
+  for (LawStart& start : more_than_form(*naming.best.model, naming.best.effects, std::move(elsewhere), data, options))
+    starts.push_back({std::move(start)});
+  return starts;
+}
+
 // Whether each of these trials leaves more than half of what the model misses beyond the noise.
 bool leave_most(const std::vector<Trial>& trials, const FittedModel& model) {
   const double before = model.misfit / model.residuals;
@@ -150,16 +186,30 @@ bool leave_most(const std::vector<Trial>& trials, const FittedModel& model) {
   });
 }
 
-// Closed forms in place of all laws found, from where these stand.
+// The laws found that a closed form takes the place of: those at its element, or all.
+std::vector<std::size_t> slots_for(const Effect& form, const std::vector<Effect>& found) {
+  std::vector<std::size_t> there, all;
+  for (std::size_t slot = 0; slot < found.size(); ++slot) {
+    all.push_back(slot);
+    if (found[slot].element == form.element) there.push_back(slot);
+  }
+  return there.empty() ? all : there;
+}
+
+// Closed forms in place of laws found, from where these stand.
 std::vector<Trial> closed_forms_in_place(const Naming& naming, const std::vector<std::vector<LawStart>>& forms,
                                          const Data& data, const ExplainOptions& options) {
-  std::vector<std::size_t> all(naming.best.effects.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  std::vector<LawStart> asked;
-  for (const std::vector<LawStart>& form : forms) asked.push_back(form.front());
-  const auto starts = stand_ins(naming.best, all, candidates_of(asked, *naming.best.model), data, options);
-  return refit(naming.best, starts, data, options.threads,
-               {.in_place_of = all, .sized = true, .to_beat = naming.best.model->misfit});
+  std::map<std::vector<std::size_t>, std::vector<LawStart>> asked;
+  for (const std::vector<LawStart>& form : forms)
+    asked[slots_for(form.front().effect, naming.best.effects)].push_back(form.front());
+  std::vector<Trial> trials;
+  for (const auto& [out, laws] : asked) {
+    const auto starts = stand_ins(naming.best, out, candidates_of(laws, *naming.best.model), data, options);
+    for (Trial& trial : refit(naming.best, starts, data, options.threads,
+                              {.in_place_of = out, .sized = true, .to_beat = naming.best.model->misfit}))
+      trials.push_back(std::move(trial));
+  }
+  return trials;
 }
 
 // Where listed laws leave something beyond the noise: closed forms in place of the laws found, and beside them.
@@ -172,9 +222,9 @@ void try_closed_forms(Naming& naming, const Data& data, const ExplainOptions& op
   std::vector<Trial> trials = from_laws ? closed_forms_in_place(naming, instead, data, options)
                                         : refit(nothing, instead, data, options.threads, {.to_beat = to_beat});
   const auto laws = static_cast<int>(naming.best.effects.size());
-  if (laws > 0 && laws < options.maximum_laws && !leaves_its_form(naming))
-    for (Trial& trial : refit(naming.best, closed_forms_for(naming.best, *naming.baseline, data, options), data,
-                              options.threads, {.to_beat = to_beat}))
+  if (laws > 0 && laws < options.maximum_laws)
+    for (Trial& trial :
+         refit(naming.best, closed_forms_beside(naming, data, options), data, options.threads, {.to_beat = to_beat}))
       trials.push_back(std::move(trial));
   naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
   const double phi = smallest_dispersion(trials, *naming.best.model);
@@ -349,6 +399,7 @@ std::vector<Trial> causes_if_any(const std::vector<Trial>& trials, const Trial& 
 // delay, viscous friction) promises little where they have bent to it.
 std::vector<std::vector<LawStart>> also_from(const Trial& given, std::vector<std::vector<LawStart>> starts,
                                              const Data& data, const ExplainOptions& options) {
+  for (std::vector<LawStart>& start : starts) start.front().promised = std::numeric_limits<double>::infinity();
   const auto asked = screen(*given.model, data, {.draws = 1, .seed = options.seed, .threads = options.threads});
   if (!asked) return starts;
   for (LawStart& start : ranked_laws(causes_in(*asked, *given.model), kSingles)) {
@@ -358,20 +409,44 @@ std::vector<std::vector<LawStart>> also_from(const Trial& given, std::vector<std
   return starts;
 }
 
+// What is asked beside the laws found: causes, and where the forms of these laws may take what is left, those that are
+// more than that.
+Screening asked_beside(Naming& naming, const Data& data, const ExplainOptions& options) {
+  Screening asked = causes_in(naming.last, *naming.best.model);
+  if (!forms_may_take_it(naming)) return asked;
+  const std::vector<LawStart> more =
+      more_than_form(*naming.best.model, naming.best.effects, ranked_laws(asked, kSingles), data, options);
+  for (Variant& variant : asked.variants) {
+    const Candidate& candidate = asked.candidates[variant.candidate];
+    const Effect effect{candidate.law, candidate.element};
+    if (std::ranges::none_of(more, [&](const LawStart& law) { return same(law.effect, effect); })) variant.gain = 0.0;
+  }
+  if (!more.empty()) naming.more_beside = naming.best.model;
+  return asked;
+}
+
 // Refits with another law: first the single laws that promise most, in a gross misfit all and from second starts too.
 // Where none of them does, sensors that are not exact; else the other laws, then pairs. Sensors that promise more than
 // the laws come first, and only laws that could do better are refitted. A parameter of which each recording has its own
-// competes with all of them. Beside a law that leaves no more than its exact form sensors alone are asked.
+// competes with all of them. Beside laws that leave no more than their exact form sensors alone are asked.
 std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptions& options) {
   const std::size_t level = naming.best.effects.size();
   const bool gross = excess(*naming.best.model) > kGross;
-  const Screening asked = causes_in(naming.last, *naming.best.model);
+  const Screening asked = asked_beside(naming, data, options);
   std::vector<std::vector<LawStart>> singles;
   for (LawStart& start : ranked_laws(asked, level == 0 || gross ? kSingles : kSingles / 2 + 1))
     singles.push_back({std::move(start)});
   if (gross)
     for (LawStart& start : second_starts(asked)) singles.push_back({std::move(start)});
   std::vector<Trial> trials;
+  if (naming.best.model == naming.baseline) trials = naming.tried;
+  for (const Trial& one : trials) {
+    const Effect& tried = one.effects.front();
+    const auto known = std::ranges::find_if(singles, [&](const std::vector<LawStart>& start) {
+      return tried.law == start.front().effect.law && tried.element == start.front().effect.element;
+    });
+    if (known != singles.end()) singles.erase(known);  // its other starts stay
+  }
   const auto refit_from = [&](const Trial& from, const std::vector<std::vector<LawStart>>& starts) {
     RefitOptions refits;
     for (const Trial& trial : trials) refits.to_beat = std::min(refits.to_beat, trial.model->misfit);
@@ -390,7 +465,7 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
     if (level == 0) naming.baseline_with_sensors = sensors.model();
     return naming.sensors_are_inexact;
   };
-  if (leaves_its_form(naming)) {
+  if (by_gain(asked).empty()) {
     static_cast<void>(are_inexact());
     return trials;
   }
@@ -464,8 +539,7 @@ double share_left_by_best(const Naming& naming) {
 }
 
 bool leaves_its_form(const Naming& naming) {
-  return naming.best.effects.size() == 1 &&
-         leaves_its_form_at_most(*naming.baseline, *naming.best.model, most_promised(naming.last));
+  return naming.best.effects.size() == 1 && naming.more_beside != naming.best.model && forms_may_take_it(naming);
 }
 
 bool a_value_explains(const FittedModel& model, double score, double phi, const Data& data, int threads) {
@@ -497,13 +571,14 @@ void settle(Naming& naming, const Data& data, const ExplainOptions& options) {
 
 Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const Data& data,
                             const ExplainOptions& options, const Progress& progress, const Trial& from,
-                            const Screening* known) {
+                            const KnownOfBaseline* known) {
   const ScreeningOptions screening{.seed = options.seed, .threads = options.threads};
   const std::vector<KnownValue> freed = freed_by(from, *baseline, data);
-  Result<Screening> first = known != nullptr ? *known : screen(*baseline, data, screening);
+  Result<Screening> first = known != nullptr ? known->first : screen(*baseline, data, screening);
   if (!first) return fail(first.error());
   Naming naming{
       .baseline = baseline, .best = {{}, baseline}, .trials = {{{}, baseline}}, .first = *first, .last = *first};
+  if (known != nullptr) naming.tried = known->tried;
   naming.forbidden = forbidden_by_physics(naming.first, *baseline);
   const auto in_time = [&](const char* step) {
     if (!passed(data.deadline)) return true;

@@ -28,17 +28,26 @@ struct WithoutLaw {
   Trial fewer;
 };
 
+/// What is known of a baseline before its search.
+struct KnownOfBaseline {
+  Screening first;
+  std::vector<Trial> tried = {};  ///< refits of it with a law each
+};
+
 struct Naming {
   std::shared_ptr<const FittedModel> baseline;
   Trial best;                          ///< effects may be empty
   std::vector<Trial> trials;           ///< all that were refitted, the best among them
   std::vector<WithoutLaw> fewer = {};  ///< see without_law
+  std::vector<Trial> tried = {};       ///< KnownOfBaseline
   Screening first;                     ///< of the baseline
   Screening last;                      ///< of the best model
   std::vector<Forbidden> forbidden = {};
   std::vector<std::string> remarks = {};              ///< what was not taken for a reason of computation
   std::shared_ptr<const FittedModel> looked_at = {};  ///< the model that was screened last,
   Screening seen = {};                                ///< and what that showed
+  /// A model beside whose laws others are more than what these may be off by in their form (form_error.hpp).
+  std::shared_ptr<const FittedModel> more_beside = {};
   /// Sensors that are off by what they may be (Data::sensors) explain more than any law: the search ended there, and
   /// `best` is to be asked beside them.
   bool sensors_are_inexact = false;
@@ -64,10 +73,10 @@ struct Naming {
 /// An Error when nothing can be looked at: the baseline cannot be linearised, or what is to begin with cannot be, beside
 /// free values. A law whose model cannot be is not taken,
 /// `remarks` says so, and the search ends with what it had. `from`: laws and free values to begin with, refitted to the
-/// same data; laws that are not needed there are taken out first. `known`: the baseline's screening, where it is known.
+/// same data; laws that are not needed there are taken out first. `known`: null: nothing.
 [[nodiscard]] Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const Data& data,
                                           const ExplainOptions& options, const Progress& progress,
-                                          const Trial& from = {}, const Screening* known = nullptr);
+                                          const Trial& from = {}, const KnownOfBaseline* known = nullptr);
 
 /// Whether each law of the best trial is needed, and whether a plainer law does as well, where a search that was cut left
 /// that open; so far as there is time.
@@ -77,7 +86,8 @@ void settle(Naming& naming, const Data& data, const ExplainOptions& options);
 /// are those that the model holds at an end of their tolerance.
 [[nodiscard]] bool a_value_explains(const FittedModel& model, double score, double phi, const Data& data, int threads);
 
-/// Whether what the only law of the best trial leaves may be its exact form: beside it no other could be claimed.
+/// Whether what the only law of the best trial leaves may be its exact form, and no other law is more than that: none
+/// could be claimed beside it.
 [[nodiscard]] bool leaves_its_form(const Naming& naming);
 /// How much that is, of what the law took.
 [[nodiscard]] double share_left_by_best(const Naming& naming);

@@ -18,7 +18,7 @@ namespace sealwatch::mismatch {
 namespace {
 
 constexpr std::size_t kAnywhere = 3;
-constexpr double kNothingElse = 2e-3;  // of what the first law took: no other is tried
+constexpr double kNothingElse = 2e-3;  // of what the laws found took: none that could be their form is tried
 
 double gain_of(const FoundEffect& effect) { return -effect.delta_bic; }
 

@@ -1,13 +1,12 @@
 // A law beside another one that says only that something is left. Either it could as well sit in three other elements,
 // or what it takes is so little beside what the largest law takes that it may be no more than that law's exact form:
 //
-//   gain < 2e-2 of the largest law's, at the same element or where some form of the largest law could do what it does
-//   (form_error.hpp)
+//   gain < 2e-2 of the largest law's, where forms of the largest law or other laws at its element could do what it does
+//   (form_error.hpp); in a gross misfit, where that cannot be asked, wherever it is at the same element
 //
 // gain: criterion without the law less that with all. As amplitudes a seventh: no closer is the form of a law known (a
-// clamp or an arctangent where the catalogue has a hyperbolic tangent). Of two true effects so different in size at one
-// element the smaller is lost by this; a note says what would take it. Where the first law leaves less than 2e-3 of what
-// it took, no other is tried.
+// clamp or an arctangent where the catalogue has a hyperbolic tangent). Where the laws found leave less than 2e-3 of what
+// they took, only laws that are more than their forms are tried.
 #pragma once
 
 #include <functional>
@@ -37,7 +36,7 @@ using MoreThanForm = std::function<bool(const LawAt&, const LawAt&)>;
 [[nodiscard]] std::optional<Remainder> remainder_among(std::span<const FoundEffect> effects, const LawAt& last,
                                                        const MoreThanForm& is_more_than_form);
 
-/// What the first law found leaves, of what it took off the misfit `without` it: what exceeds the noise's share of the misfit
+/// What the laws found leave, of what they took off the misfit `without` it: what exceeds the noise's share of the misfit
 /// `with` it, or, as that share is only known to about sqrt(2 N), what another law promises to take (`promised`).
 [[nodiscard]] double share_left(const FittedModel& without, const FittedModel& with, double promised);
 /// Whether that is no more than its exact form may take. Not in what stays a gross misfit.

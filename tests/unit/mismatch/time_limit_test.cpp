@@ -141,7 +141,7 @@ TEST(TimeLimit, WhatWasFoundBesideAValueIsNotLost) {
   AssetConfig leaking = with_free_value(with_a_leak(), "A_C");
   leaking.physics.front().parameters.at("G").estimate = true;
   const Trial found{{{find_law("external_leakage", {"G"}).value(), "chamber_a"}}, fitted(leaking, data)};
-  const Screening known = screen(*baseline, data, {}).value();
+  const KnownOfBaseline known{screen(*baseline, data, {}).value()};
   deadline.set_in(-1.0);
   EXPECT_FALSE(name_effects(baseline, data, {}, {}, found, &known));
 }
@@ -156,7 +156,7 @@ TEST(TimeLimit, WhatASearchSetsOutFromIsNotLost) {
   AssetConfig leaking = with_a_leak();
   leaking.physics.front().parameters.at("G").estimate = true;
   const Trial found{{{find_law("external_leakage", {"G"}).value(), "chamber_a"}}, fitted(leaking, data)};
-  const Screening known = screen(*baseline, data, {}).value();
+  const KnownOfBaseline known{screen(*baseline, data, {}).value()};
   deadline.set_in(1e-2);  // the screening takes longer, what is before it does not
   const auto naming = name_effects(baseline, data, {}, {}, found, &known);
   ASSERT_TRUE(naming) << naming.error().describe();

@@ -162,11 +162,17 @@ TEST_F(RunnerTest, SendsAgainWhatIsAskedForAndEndsWithTheLatest) {
   EXPECT_TRUE(listener_.bus().publish(ResendRequest{"somebody else", "test_features", 1, 4, "listener"}));
   EXPECT_TRUE(listener_.bus().publish(ResendRequest{writer, "advisory", 1, 4, "listener"}));
   EXPECT_TRUE(listener_.bus().publish(ResendRequest{writer, "no_topic", 1, 4, "listener"}));
+  const auto have_come = [&](std::size_t count) {  // it rests after each, as long as that took
+    return step_until([&] { return listener_.sequences(Topic::test_features).size() >= count; },
+                      [&] { step(*process, 1); });
+  };
+  EXPECT_TRUE(have_come(3));
   step(*process, 3);
   EXPECT_THAT(listener_.sequences(Topic::test_features), ElementsAre(1, 2, 5))
       << "a late subscriber must find the latest as the last one published";
   EXPECT_THAT(listener_.sequences(Topic::state_report), IsEmpty());
   EXPECT_TRUE(listener_.bus().publish(ResendRequest{writer, "test_features", 5, 900, "listener"}));
+  EXPECT_TRUE(have_come(4));
   step(*process, 3);
   EXPECT_THAT(listener_.sequences(Topic::test_features), ElementsAre(1, 2, 5, 5)) << "no more than there is";
 }

@@ -250,7 +250,9 @@ class Refits {
   }
 
   [[nodiscard]] bool may_come_to_bound(const LawStart& start) const {
-    return 0.5 * (start.asked_at - kOptimisticOfPromise * start.promised) <= bound_.cost;
+    const bool near = start.asked_at <= kGross * from_.model->residuals;
+    const double optimism = near ? kOptimisticOfPromise : kOptimisticFarOff;
+    return 0.5 * (start.asked_at - optimism * start.promised) <= bound_.cost;
   }
 
   // Each as long as it may come near the best so far.

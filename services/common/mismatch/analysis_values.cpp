@@ -165,9 +165,9 @@ bool Analysis::take_beside_values(const WrongDatasheet& wrong, const std::vector
                              progress_, wrong.with, &of_values);
   if (!naming || !naming->differs_in.empty() || naming->best.effects.empty()) return false;
   const auto known = [&](const Effect& effect) { return is_among(effect, best_.effects); };
-  if (!std::ranges::all_of(naming->best.effects,
-                           known)) {  // what stands in one of the explanations only is not claimed
-    time_.allow(1.0);                 // it is what is told
+  // What stands in one of the explanations only is not claimed.
+  if (!std::ranges::all_of(naming->best.effects, known)) {
+    time_.allow(1.0);  // it is what is told
     Result<Screening> left = screen(*wrong.with.model, prepared(fit_), screening);
     time_.allow(kSearchShare);
     if (!left) return false;

@@ -23,8 +23,8 @@ constexpr int kIterations = 10;     // of each, before the best of them go on
 // than another is not fitted.
 constexpr double kNearlyAll = 0.9;
 constexpr double kGrossOptimism = 10.0;
-// Times what the linear model of all values promises: a value is off by half at most, and does little that it does not
-// tell.
+// Times what the linear model promises of a value beside all laws: it is off by half at most, and does little that the
+// model does not tell. In place of laws it promises no fall but a rise.
 constexpr double kMostOfPromise = 3.0;
 
 bool is_among(const std::vector<std::size_t>& slots, std::size_t slot) {
@@ -260,7 +260,7 @@ std::vector<ValueSwap> values_in_place_of(const SwapQuestion& of) {
     const SearchBound bound{.cost = 0.5 * limit(promises[k]),
                             .optimism = excess(found) > kGross ? kGrossOptimism : kOptimistic};
     const double at_best = all->misfit - kMostOfPromise * (all->misfit - promises[k].misfit);
-    if (at_best > limit(promises[k])) return std::shared_ptr<const FittedModel>();
+    if (promises[k].out.empty() && at_best > limit(promises[k])) return std::shared_ptr<const FittedModel>();
     std::optional<FittedModel> model = fitted(of, promises[k], *all, bound);
     return model ? std::make_shared<const FittedModel>(std::move(*model)) : nullptr;
   });

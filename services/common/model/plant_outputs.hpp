@@ -3,6 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -22,7 +25,8 @@ class RecordedPlantSystem final : public PlantSystem<Model, WithPhysics> {
       : System(input, terms, values, free, injected),
         injected_(injected),
         free_(free.size()),
-        columns_(1 + free.size() + (injected == nullptr ? 0 : injected->columns())) {
+        columns_(1 + free.size() + (injected == nullptr ? 0 : injected->columns())),
+        outputs_see_laws_(outputs_see(terms)) {
     for (std::size_t first = 0; first < free.size(); first += Width)
       blocks_.push_back(make_block(values, free, static_cast<int>(first)));
   }
@@ -42,13 +46,16 @@ class RecordedPlantSystem final : public PlantSystem<Model, WithPhysics> {
     this->add_recording(t, state, factor, x, stride);
   }
 
-  void output(int which, double t, const double* point, std::size_t stride, double* signal) const override {
+  void outputs(std::span<const int> which, double t, const double* point, std::size_t stride,
+               double* signals) const override {
     if constexpr (WithPhysics)
-      injected_ != nullptr ? with_physics<kStates + static_cast<int>(System::kSites)>(which, t, point, stride, signal)
-                           : with_physics<kStates>(which, t, point, stride, signal);
+      injected_ != nullptr ? with_physics<kStates + static_cast<int>(System::kSites)>(which, t, point, stride, signals)
+                           : with_physics<kStates>(which, t, point, stride, signals);
     else
-      of_blocks(which, t, point, stride, signal);
-    for (const auto& column : this->recording()) add_recording_part(which, column, t, point, stride, signal);
+      of_blocks(which, t, point, stride, signals);
+    for (const auto& column : this->recording())
+      for (std::size_t k = 0; k < which.size(); ++k)
+        add_recording_part(which[k], column, t, point, stride, signals + k * columns_);
   }
 
  private:
@@ -57,6 +64,7 @@ class RecordedPlantSystem final : public PlantSystem<Model, WithPhysics> {
     int first = 0;
     int count = 0;
     bool has_parameters = false;
+    bool seen_by_outputs = false;  ///< some output depends on one of its parameters directly
     typename System::template Values<Dual<Width>> values;
   };
 
@@ -70,12 +78,40 @@ class RecordedPlantSystem final : public PlantSystem<Model, WithPhysics> {
       if (quantity.kind == FreeQuantity::Kind::initial_state || quantity.is_of_recording()) continue;
       block.has_parameters = true;
       const bool load = quantity.kind == FreeQuantity::Kind::load_factor;
-      if (!load && quantity.index >= System::kPlantParameters)
+      if (!load && quantity.index >= System::kPlantParameters) {
         block.values.laws[quantity.index - System::kPlantParameters].derivative[k] = 1.0;
-      else
-        seed(block.values.plant, load ? System::kPlantParameters : quantity.index, k);
+      } else {
+        const std::size_t parameter = load ? System::kPlantParameters : quantity.index;
+        seed(block.values.plant, parameter, k);
+        block.seen_by_outputs = block.seen_by_outputs || seen_parameters()[parameter];
+      }
     }
     return block;
+  }
+
+  /// Which parameters, the load factor behind them, some output depends on: one that is not a number leaves none.
+  static const std::array<bool, System::kPlantParameters + 1>& seen_parameters() {
+    static const auto seen = [] {
+      std::array<bool, System::kPlantParameters + 1> result{};
+      for (std::size_t which = 0; which < result.size(); ++which) result[which] = some_output_sees(which);
+      return result;
+    }();
+    return seen;
+  }
+  static bool some_output_sees(std::size_t parameter) {
+    typename System::Parameters parameters;
+    std::size_t index = 0;
+    parameters.visit(
+        [&](std::string_view, double& value) {
+          value = index++ == parameter ? std::numeric_limits<double>::quiet_NaN() : 1.0;
+        },
+        parameters);
+    typename System::template PlantState<double> state;
+    for (std::size_t k = 0; k < state.size(); ++k) state[k] = 1.0 + static_cast<double>(k);
+    for (std::size_t k = 0; k < Model::kOutputs.size(); ++k)
+      if (Model::kOutputs[k].state < 0 && std::isnan(Model::output(static_cast<int>(k), state, {}, parameters)))
+        return true;
+    return false;
   }
 
   static void seed(typename System::Equations::template Parameters<Dual<Width>>& parameters, std::size_t which,
@@ -96,7 +132,7 @@ class RecordedPlantSystem final : public PlantSystem<Model, WithPhysics> {
     const auto state = this->state_of(point, stride);
     const auto value = [&](const typename System::Equations::Input& input) -> std::array<double, 1> {
       if constexpr (WithPhysics) {
-        const auto extra = this->template extra<double>(state, input, this->values());
+        const auto extra = seen_extra<double>(state, input, this->values());
         return {evaluate_output(which, System::plant_state(state), input, this->values().plant, extra)};
       } else {
         return {Model::output(which, state, input, this->values().plant)};
@@ -106,13 +142,21 @@ class RecordedPlantSystem final : public PlantSystem<Model, WithPhysics> {
   }
 
   // dh/dp + dh/dy S by dual numbers whose states carry S.
-  void of_blocks(int which, double t, const double* point, std::size_t stride, double* signal) const {
+  void of_blocks(std::span<const int> which, double t, const double* point, std::size_t stride, double* signals) const {
     const auto input = this->input_at(t);
-    if (blocks_.empty()) signal[0] = Model::output(which, this->state_of(point, stride), input, this->values().plant);
+    if (blocks_.empty()) {
+      const auto state = this->state_of(point, stride);
+      for (std::size_t k = 0; k < which.size(); ++k)
+        signals[k * columns_] = Model::output(which[k], state, input, this->values().plant);
+    }
     for (const auto& block : blocks_) {
-      const auto result = Model::output(which, seeded(point, stride, block), input, block.values.plant);
-      signal[0] = result.value;
-      std::copy(result.derivative.begin(), result.derivative.begin() + block.count, signal + 1 + block.first);
+      const auto state = seeded(point, stride, block);
+      for (std::size_t k = 0; k < which.size(); ++k) {
+        const auto result = Model::output(which[k], state, input, block.values.plant);
+        double* signal = signals + k * columns_;
+        signal[0] = result.value;
+        std::copy(result.derivative.begin(), result.derivative.begin() + block.count, signal + 1 + block.first);
+      }
     }
   }
 
@@ -134,18 +178,42 @@ class RecordedPlantSystem final : public PlantSystem<Model, WithPhysics> {
       return Model::output(which, y, input, p);
   }
 
+  // What the laws add at the sites that outputs see; 0 where none in force acts there.
+  template <class R, class S, class P>
+  auto seen_extra(const typename System::template State<S>& state, const typename System::Equations::Input& input,
+                  const typename System::template Values<P>& values) const {
+    return outputs_see_laws_ ? this->template extra<R>(state, input, values) : std::array<R, System::kSites>{};
+  }
+
+  [[nodiscard]] static bool outputs_see(const PhysicsTerms& terms) {
+    if constexpr (requires { Model::kOutputSites; }) {
+      const auto seen = [](std::size_t site) { return std::ranges::count(Model::kOutputSites, site) > 0; };
+      return std::ranges::any_of(terms.active,
+                                 [&](const ActiveTerm& term) { return std::ranges::any_of(term.sites, seen); });
+    }
+    return false;
+  }
+
   // The same with what the laws add, and for the injected columns through the gradients by state and by site.
   template <int Directions>
-  void with_physics(int which, double t, const double* point, std::size_t stride, double* signal) const {
+  void with_physics(std::span<const int> which, double t, const double* point, std::size_t stride,
+                    double* signals) const {
     using Gradient = Dual<Directions>;
     const auto input = this->input_at(t);
     typename System::template State<Gradient> state;
     for (int k = 0; k < this->rows(); ++k) state[k] = Gradient::variable(point[k * stride], k);
-    auto extra = this->template extra<Gradient>(state, input, this->values());
+    auto extra = seen_extra<Gradient>(state, input, this->values());
     if constexpr (Directions > kStates)
       for (std::size_t site = 0; site < System::kSites; ++site)
         extra[site].derivative[static_cast<std::size_t>(kStates) + site] += 1.0;
-    const Gradient result = evaluate_output(which, System::plant_state(state), input, this->values().plant, extra);
+    for (std::size_t k = 0; k < which.size(); ++k)
+      chain_to_columns(evaluate_output(which[k], System::plant_state(state), input, this->values().plant, extra), point,
+                       stride, signals + k * columns_);
+    add_parameter_parts(which, this->state_of(point, stride), input, signals);
+  }
+
+  template <int Directions>
+  void chain_to_columns(const Dual<Directions>& result, const double* point, std::size_t stride, double* signal) const {
     signal[0] = result.value;
     std::fill(signal + 1, signal + columns_, 0.0);
     for (int k = 0; k < this->rows(); ++k) {
@@ -158,23 +226,26 @@ class RecordedPlantSystem final : public PlantSystem<Model, WithPhysics> {
         const auto [column, site] = injected_->entries()[e];
         signal[1 + free_ + column] += result.derivative[static_cast<std::size_t>(kStates) + site] * this->weights()[e];
       }
-    add_parameter_part(which, this->state_of(point, stride), input, signal);
   }
 
   template <class State, class Input>
-  void add_parameter_part(int which, const State& state, const Input& input, double* signal) const {
+  void add_parameter_parts(std::span<const int> which, const State& state, const Input& input, double* signals) const {
     for (const auto& block : blocks_) {
-      if (!block.has_parameters) continue;
-      const auto extra = this->template extra<Dual<Width>>(state, input, block.values);
-      const Dual<Width> result = evaluate_output(which, System::plant_state(state), input, block.values.plant, extra);
-      for (int k = 0; k < block.count; ++k)
-        signal[static_cast<std::size_t>(1 + block.first + k)] += result.derivative[k];
+      if (!(block.seen_by_outputs || (outputs_see_laws_ && block.has_parameters))) continue;
+      const auto extra = seen_extra<Dual<Width>>(state, input, block.values);
+      for (std::size_t k = 0; k < which.size(); ++k) {
+        const Dual<Width> result =
+            evaluate_output(which[k], System::plant_state(state), input, block.values.plant, extra);
+        double* signal = signals + k * columns_ + 1 + block.first;
+        for (int column = 0; column < block.count; ++column) signal[column] += result.derivative[column];
+      }
     }
   }
 
   std::vector<Block> blocks_;
   InjectedColumns* injected_;
   std::size_t free_, columns_;
+  bool outputs_see_laws_;
 };
 
 }  // namespace sealwatch

@@ -3,8 +3,8 @@
 // Model says what the equations (sealwatch/model/<plant>.hpp) leave open:
 //   Equations; kStateNames, kSlowStates, kQuasiSteady, kMaximumOrder, kScale (allowed local error of a step at relative
 //   tolerance 1e-6); kInputs {name, hold}, input(values) -> Equations::Input; kOutputs {channel, state it equals or
-//   -1}; output(k, state, input, parameters) of an output that is no state; start(asset values, recorded) ->
-//   ModelValues.
+//   -1}; output(k, state, input, parameters[, what laws add]) of an output that is no state; kOutputSites where it
+//   sees what laws add; start(asset values, recorded) -> ModelValues.
 #pragma once
 
 #include <string>

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -61,7 +62,9 @@ class PlantSystem : public SizedSystem<kSizeOf<Model, WithPhysics>> {
       if (free[k].is_of_recording()) recording_.push_back({1 + k, free[k]});
     for (const ActiveTerm& term : terms.active) {
       const double* parameters = values.parameters.data() + term.first_parameter;
-      law_inputs_.push_back(law_input({}, 0.0, std::span(parameters, term.law->parameters.size()), term.roundings));
+      constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+      const std::span own(parameters, term.law->parameters.size());
+      known_laws_.insert(known_laws_.end(), kSites, {.at = law_input({}, kNowhere, own, term.roundings)});
     }
     if (injected_ != nullptr) weights_.resize(injected_->entries().size());
   }
@@ -294,10 +297,22 @@ class PlantSystem : public SizedSystem<kSizeOf<Model, WithPhysics>> {
     const std::size_t count = term.law->parameters.size();
     const P* parameter = values.laws.data() + (term.first_parameter - kPlantParameters);
     const S hidden = term.hidden >= 0 ? y[kPlantStates + term.hidden] : S(0.0);
-    LawInput& at = law_inputs_[static_cast<std::size_t>(&term - terms_.active.data())];
-    for (std::size_t k = 0; k < kSiteSignals; ++k) at.signal[k].value = value_of(signals[k]);
-    at.hidden.value = value_of(hidden);
-    return chain(term.law->evaluate(at).*what, signals, hidden, parameter, count);
+    return chain(law_output(term, site, signals, hidden).*what, signals, hidden, parameter, count);
+  }
+
+  /// Of one law at one site. Blocks of parameters, outputs and rates of hidden states ask at the same point again.
+  template <class R, class S>
+  [[nodiscard]] const LawOutput& law_output(const ActiveTerm& term, std::size_t site,
+                                            const std::array<R, kSiteSignals>& signals, const S& hidden) const {
+    KnownLaw& known = known_laws_[static_cast<std::size_t>(&term - terms_.active.data()) * kSites + site];
+    bool same = known.at.hidden.value == value_of(hidden);
+    known.at.hidden.value = value_of(hidden);
+    for (std::size_t k = 0; k < kSiteSignals; ++k) {
+      same = same && known.at.signal[k].value == value_of(signals[k]);
+      known.at.signal[k].value = value_of(signals[k]);
+    }
+    if (!same) known.output = term.law->evaluate(known.at);
+    return known.output;
   }
 
   const RecordedInput& input_;
@@ -307,7 +322,12 @@ class PlantSystem : public SizedSystem<kSizeOf<Model, WithPhysics>> {
   mutable std::vector<double> weights_;
   Values<double> values_;
   std::vector<Column> recording_;
-  mutable std::vector<LawInput> law_inputs_;  ///< of the laws in force, with their parameters
+  /// A law in force with its parameters, where it was evaluated last at a site.
+  struct KnownLaw {
+    LawInput at;
+    LawOutput output{};
+  };
+  mutable std::vector<KnownLaw> known_laws_;  ///< for each law all sites
   std::size_t segment_ = 0;
   mutable std::size_t cursor_ = 0;
 };

@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "sealwatch/signal/noise_floor.hpp"
 #include "services/common/model/measured_input.hpp"
 
 namespace sealwatch {
@@ -29,9 +28,9 @@ double parabola_at(const std::vector<double>& time_s, const std::vector<double>&
 
 }  // namespace
 
-RecordedCourse::RecordedCourse(const std::vector<double>& time_s, const std::vector<double>& values, double longest_s) {
-  const double noise = signal::estimate_noise_floor(values, time_s).standard_deviation,
-               sample_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
+RecordedCourse::RecordedCourse(const std::vector<double>& time_s, const std::vector<double>& values, double noise,
+                               double longest_s) {
+  const double sample_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
   for (double distance_s = longest_s; distance_s > sample_s; distance_s /= 2.0) {
     smooth(time_s, values, distance_s);
     double squares = 0.0;

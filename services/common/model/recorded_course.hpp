@@ -9,8 +9,9 @@ namespace sealwatch {
 
 class RecordedCourse {
  public:
-  /// `longest_s`: distance of knots, at most; where closer samples differ by more than their noise, it is halved.
-  RecordedCourse(const std::vector<double>& time_s, const std::vector<double>& values, double longest_s);
+  /// `noise`: standard deviation. `longest_s`: distance of knots, at most; where closer samples differ by more than
+  /// their noise, it is halved.
+  RecordedCourse(const std::vector<double>& time_s, const std::vector<double>& values, double noise, double longest_s);
 
   [[nodiscard]] double at(double time_s) const;
 

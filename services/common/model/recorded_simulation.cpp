@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "sealwatch/signal/noise_floor.hpp"
+
 namespace sealwatch {
 namespace {
 
@@ -279,6 +281,16 @@ void RecordedSimulation::select_channels(std::span<const OutputName> outputs, co
       recorded_.col(static_cast<Eigen::Index>(c)).setZero();  // to be simulated alone
     else
       recorded_.col(static_cast<Eigen::Index>(c)) = Eigen::Map<const Eigen::VectorXd>(values.data(), rows);
+}
+
+const std::vector<double>& RecordedSimulation::recorded_noise() const {
+  std::call_once(noise_is_known_, [this] {
+    for (const auto& column : recorded_.colwise()) {
+      const std::vector<double> values(column.begin(), column.end());
+      noise_.push_back(signal::estimate_noise_floor(values, input_.times()).standard_deviation);
+    }
+  });
+  return noise_;
 }
 
 void RecordedSimulation::set_states(std::vector<std::string> names, std::vector<std::string> slow, ModelValues start,

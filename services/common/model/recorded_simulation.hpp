@@ -2,6 +2,7 @@
 // and the values from which a simulation starts.
 #pragma once
 
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -45,6 +46,8 @@ class RecordedSimulation : public PlantSimulation {
                                                     const SimulationOptions& options) const final;
   [[nodiscard]] std::span<const SimulatedChannel> simulated_channels() const { return channels_; }
   [[nodiscard]] const PhysicsTerms& terms() const { return terms_; }
+  /// Standard deviation of each recorded channel's noise, as its samples show it.
+  [[nodiscard]] const std::vector<double>& recorded_noise() const;
 
  protected:
   RecordedSimulation(const PlantDescription& plant, PhysicsTerms terms, std::vector<std::string> input_names,
@@ -96,6 +99,8 @@ class RecordedSimulation : public PlantSimulation {
   std::vector<double> sensor_gain_, sensor_offset_;  ///< the asset's, per sensor
   RowMatrix recorded_;
   ModelValues start_;
+  mutable std::once_flag noise_is_known_;
+  mutable std::vector<double> noise_;
 };
 
 }  // namespace sealwatch

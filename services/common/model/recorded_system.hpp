@@ -29,8 +29,9 @@ class RecordedSystem {
   virtual void set_segment(std::size_t segment) = 0;
   /// What a segment's begin adds to `point`.
   virtual void cross_jump(double /*t*/, double* /*point*/, std::size_t /*stride*/) const {}
-  /// An output that is no state, and its derivatives by all columns.
-  virtual void output(int which, double t, const double* point, std::size_t stride, double* signal) const = 0;
+  /// Outputs that are no states, a row of `signals` each: its value and its derivatives by all columns.
+  virtual void outputs(std::span<const int> which, double t, const double* point, std::size_t stride,
+                       double* signals) const = 0;
   /// Why it could not be evaluated; "": nothing that is known.
   [[nodiscard]] virtual std::string trouble() const { return {}; }
   /// What the equations themselves say of it; "": nothing.

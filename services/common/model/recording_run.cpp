@@ -34,12 +34,15 @@ RecordedSystem& held(const RecordedSimulation& simulation, const RecordedInput& 
   std::vector<MeasuredStates::State> states;
   for (std::size_t k = 0; k < simulation.simulated_channels().size(); ++k) {
     const int state = simulation.simulated_channels()[k].state;
+    if (state < 0) continue;
+    const double gain = 1.0 + start.sensor_gain[k], smoothed_s = MeasuredStates::kSmoothed * options.held_within_s;
     const Eigen::ArrayXd recorded =
-        (simulation.recorded().col(static_cast<Eigen::Index>(k)).array() - start.sensor_offset[k]) /
-        (1.0 + start.sensor_gain[k]);
-    const double smoothed_s = MeasuredStates::kSmoothed * options.held_within_s;
-    if (state >= 0)
-      states.push_back({.state = state, .recorded = {input.times(), {recorded.begin(), recorded.end()}, smoothed_s}});
+        (simulation.recorded().col(static_cast<Eigen::Index>(k)).array() - start.sensor_offset[k]) / gain;
+    states.push_back({.state = state,
+                      .recorded = {input.times(),
+                                   {recorded.begin(), recorded.end()},
+                                   simulation.recorded_noise()[k] / std::abs(gain),
+                                   smoothed_s}});
   }
   if (states.empty()) return system;
   system.hold_to({input.times().front(), std::move(states), options.held_within_s}, start.initial_state);
@@ -64,14 +67,15 @@ class RecordingRun {
                                    .maximum_steps = most_steps_,
                                    .maximum_order = system_.maximum_order()})),
         integrator_(*owned_),
-        point_(integrator_.size(), 0.0),
-        signal_(columns_, 0.0) {
+        point_(integrator_.size(), 0.0) {
     const std::vector<SensorTerm>& laws = simulation.terms().sensors;
     for (const SimulatedChannel& channel : simulation.simulated_channels()) {
       filters_.emplace_back(channel.time_constant_s, columns_);
       filtered_ = filtered_ || channel.time_constant_s > 0.0;
       memory_s_ = std::max(memory_s_, channel.time_constant_s);
+      if (channel.state < 0) computed_.push_back(channel.output);
     }
+    signals_.resize(computed_.size() * columns_);
     double lag_s = 0.0;
     for (const SensorTerm& term : laws) {
       if (term.kind != SiteKind::sensor_lag) continue;
@@ -294,14 +298,12 @@ class RecordingRun {
 
   void pass_sensors(double time, const double* point) {
     ++outputs_.points;
+    if (!computed_.empty()) system_.outputs(computed_, time, point, integrator_.stride(), signals_.data());
+    const double* computed = signals_.data();
     for (std::size_t c = 0; c < filters_.size(); ++c) {
-      const auto [output, state, time_constant] = simulation_.simulated_channels()[c];
-      const double* signal = signal_.data();
-      if (state < 0)
-        system_.output(output, time, point, integrator_.stride(), signal_.data());
-      else
-        signal = point + state * integrator_.stride();
-      filters_[c].advance(time - filtered_until_, signal);
+      const int state = simulation_.simulated_channels()[c].state;
+      filters_[c].advance(time - filtered_until_, state < 0 ? computed : point + state * integrator_.stride());
+      if (state < 0) computed += columns_;
       if (!sensors_.empty()) sensors_[c].advance(time - filtered_until_, filters_[c].output());
     }
     filtered_until_ = time;
@@ -328,7 +330,9 @@ class RecordingRun {
   std::size_t most_steps_;
   std::unique_ptr<BackwardDifferences> owned_;
   BackwardDifferences& integrator_;
-  std::vector<double> point_, signal_;
+  std::vector<double> point_;
+  std::vector<int> computed_;    ///< outputs that are no states, in the order of the channels
+  std::vector<double> signals_;  ///< of these
   std::vector<SensorFilter> filters_;
   std::vector<SensorLaws> sensors_;  ///< empty where no sensor has a law
   SimulatedOutputs outputs_;

@@ -158,10 +158,7 @@ std::string RuntimeSystem::trouble() const {
   return text::format("{} moves fastest, by {:.3g} {}", state.name, last_rates_[fastest], rate_unit(state.unit));
 }
 
-void RuntimeSystem::set_segment(std::size_t segment) {
-  segment_ = segment;
-  outputs_known_ = false;
-}
+void RuntimeSystem::set_segment(std::size_t segment) { segment_ = segment; }
 
 void RuntimeSystem::note(std::span<const double> rates) const { std::ranges::copy(rates, last_rates_.begin()); }
 
@@ -358,7 +355,8 @@ std::span<const double> RuntimeSystem::weights_at(double t) const {
 // Where there are events the sample comes after that of the jump, in the segment which begins there.
 bool RuntimeSystem::linearise_outputs(double t, const double* point, std::size_t stride) const {
   const bool next = !has_events() && segment_ + 1 < input_.segment_count() && t >= input_.segment_end(segment_);
-  locate(t, output_state_.data(), next ? segment_ + 1 : segment_);
+  for (std::size_t k = 0; k < state_.size(); ++k) state_[k] = point[k * stride];
+  locate(t, state_.data(), next ? segment_ + 1 : segment_);
   const bool differentiate = columns_ > 1;
   if (!add_laws(differentiate)) return false;
   std::span<const double> weights;
@@ -390,17 +388,11 @@ bool RuntimeSystem::linearise_outputs(double t, const double* point, std::size_t
   return true;
 }
 
-void RuntimeSystem::output(int which, double t, const double* point, std::size_t stride, double* signal) const {
-  std::vector<double>& y = state_;
-  for (std::size_t k = 0; k < y.size(); ++k) y[k] = point[k * stride];
-  const bool known = outputs_known_ && t == output_time_ && y == output_state_;  // another channel of the same sample
-  if (!known) {
-    output_state_ = y;
-    output_time_ = t;
-    outputs_known_ = linearise_outputs(t, point, stride);
-    if (!outputs_known_) std::ranges::fill(outputs_, kNotKnown);
-  }
-  std::copy_n(outputs_.data() + static_cast<std::size_t>(which) * columns_, columns_, signal);
+void RuntimeSystem::outputs(std::span<const int> which, double t, const double* point, std::size_t stride,
+                            double* signals) const {
+  if (!linearise_outputs(t, point, stride)) std::ranges::fill(outputs_, kNotKnown);
+  for (const int row : which)
+    signals = std::copy_n(outputs_.data() + static_cast<std::size_t>(row) * columns_, columns_, signals);
 }
 
 }  // namespace sealwatch

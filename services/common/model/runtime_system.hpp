@@ -67,7 +67,8 @@ class RuntimeSystem final : public SizedSystem<kDynamicSize> {
   void linearise(double t, const double* y, double* f, DynamicMatrix& jacobian) const override;
   void add_parameter_derivatives(double t, const double* y, double factor, double* x,
                                  std::size_t stride) const override;
-  void output(int which, double t, const double* point, std::size_t stride, double* signal) const override;
+  void outputs(std::span<const int> which, double t, const double* point, std::size_t stride,
+               double* signals) const override;
 
  private:
   struct Term {
@@ -111,14 +112,12 @@ class RuntimeSystem final : public SizedSystem<kDynamicSize> {
 
   mutable std::size_t cursor_ = 0;
   mutable RuntimePoint point_;
-  mutable std::vector<double> inputs_, input_rates_, hidden_, signal_values_, state_, output_state_, outputs_,
-      last_rates_;
+  mutable std::vector<double> inputs_, input_rates_, hidden_, signal_values_, state_, outputs_, last_rates_;
   mutable const RuntimeLinearisation* signal_slopes_ = nullptr;
   mutable Rows added_, hidden_rates_;
   mutable std::vector<double> weights_, earlier_weights_, between_weights_;
   mutable double weights_time_ = 0.0, earlier_time_ = 0.0;
-  mutable double output_time_ = 0.0;
-  mutable bool weighed_ = false, outputs_known_ = false;
+  mutable bool weighed_ = false;
 };
 
 }  // namespace sealwatch

@@ -30,7 +30,7 @@ Recorded wave(double period_s) {
 
 double rms_error(double period_s) {
   const Recorded recorded = wave(period_s);
-  const RecordedCourse course(recorded.time_s, recorded.values, kLongest_s);
+  const RecordedCourse course(recorded.time_s, recorded.values, kNoise, kLongest_s);
   double squares = 0.0;
   int count = 0;
   for (double t = 1.0; t < 19.0; t += 0.003, ++count)
@@ -44,13 +44,13 @@ TEST(RecordedCourse, LeavesOutTheNoiseOfASlowCourse) { EXPECT_LT(rms_error(5.0),
 TEST(RecordedCourse, KeepsAFastOne) { EXPECT_LT(rms_error(0.1), 2.0 * kNoise); }
 
 TEST(RecordedCourse, KeepsTwoSamples) {
-  const RecordedCourse course({0.0, 1.0}, {2.0, 4.0}, kLongest_s);
+  const RecordedCourse course({0.0, 1.0}, {2.0, 4.0}, 0.0, kLongest_s);
   EXPECT_NEAR(course.at(0.5), 3.0, 1e-12);
 }
 
 /// As of a free spline's end: a cubic would run away.
 TEST(RecordedCourse, GoesStraightOnBeyondItsEnd) {
-  const RecordedCourse course({0.0, 1.0, 2.0, 3.0}, {0.0, 1.0, 0.0, 1.0}, 0.1);
+  const RecordedCourse course({0.0, 1.0, 2.0, 3.0}, {0.0, 1.0, 0.0, 1.0}, 0.0, 0.1);
   EXPECT_NEAR(course.at(6.0) - course.at(5.0), course.at(4.0) - course.at(3.0), 1e-12);
 }
 

@@ -30,6 +30,7 @@ struct EhaModel {
                                                            {"velocity", Eha::kV},
                                                            {"rod_force", -1}}};
   enum Output { kDifferential = 4, kFlow = 5, kRodForce = 8 };
+  static constexpr std::array<std::size_t, 2> kOutputSites = {Eha::kDrop1, Eha::kCrack1};
 
   static Eha::Input input(const std::array<double, 1>& values, const std::array<double, 1>& slopes) {
     return {values[0], slopes[0]};

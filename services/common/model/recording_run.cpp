@@ -16,8 +16,8 @@ namespace sealwatch {
 namespace {
 
 // Where sensors have a low-pass or a lag, coarser recordings are simulated at points between their samples too,
-// because these filters take the signal as linear from point to point. A log of minutes is that of a slow plant.
-constexpr double kLongestPointDistance_s = 0.0051;
+// because these filters take the signal as a parabola through points. A log of minutes is that of a slow plant.
+constexpr double kLongestPointDistance_s = 0.0101;
 constexpr double kMostPoints = 800.0;  // between two samples
 // A filter forgets by exp(-age / time constant). Further back than kAllRemembered time constants points need not be as
 // close: e times as far apart every kForgotten time constants, the error that each leaves still falls with age.
@@ -214,7 +214,7 @@ class RecordingRun {
   }
 
   // Steps until `time` is reached and passes the sensors the signal there, and at the ends of steps that are shorter
-  // than the distance between points: there the signal moves too fast to be taken as linear.
+  // than the distance between points: there the signal moves too fast to be a parabola.
   [[nodiscard]] bool advance_to(double time, double distance) {
     if (time_is_up()) return false;
     if (integrator_.states() == 0) return pass_known_events(time) && (pass_sensors(time, point_.data()), true);

@@ -107,9 +107,9 @@ std::vector<std::array<double, kEquations>> solve_with_cvode(Oracle& oracle,
   return rows;
 }
 
-void compare(double load_factor) {
+void compare(double load_factor, double rate_Hz) {
   const AssetConfig asset = nominal_asset("eha");
-  const TimeSeries pst = standard_pst(asset);
+  const TimeSeries pst = standard_pst(asset, rate_Hz);
   const auto simulation = PlantSimulation::create(asset, pst);
   ASSERT_TRUE(simulation);
   ModelValues values = (*simulation)->start();
@@ -148,14 +148,15 @@ void compare(double load_factor) {
       sum += error * error;
       if (std::abs(error) > largest) largest = std::abs(error), where = row;
     }
-    std::printf("load %+.1f  %-14s N (rms error / sigma)^2 = %.3g, largest error %.2g sigma at %.3f s\n", load_factor,
-                channel.c_str(), sum, largest, pst.time_s[where]);
+    std::printf("load %+.1f, %.0f Hz  %-14s N (rms error / sigma)^2 = %.3g, largest error %.2g sigma at %.3f s\n",
+                load_factor, rate_Hz, channel.c_str(), sum, largest, pst.time_s[where]);
     EXPECT_LT(sum, 1.0) << channel;
   }
 }
 
-TEST(IntegrationAccuracy, IsBelowWhatTheSensorsCanShowOnAStandardPst) { compare(0.0); }
-TEST(IntegrationAccuracy, IsBelowWhatTheSensorsCanShowUnderHighLoad) { compare(0.2); }
+TEST(IntegrationAccuracy, IsBelowWhatTheSensorsCanShowOnAStandardPst) { compare(0.0, 200.0); }
+TEST(IntegrationAccuracy, IsBelowWhatTheSensorsCanShowUnderHighLoad) { compare(0.2, 200.0); }
+TEST(IntegrationAccuracy, IsBelowWhatTheSensorsCanShowAtAHundredHertz) { compare(0.1, 100.0); }
 
 }  // namespace
 }  // namespace sealwatch

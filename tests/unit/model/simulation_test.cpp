@@ -221,6 +221,40 @@ TEST(SensorFilter, IsExactForARampAndPassesDirectlyWithoutALag) {
   }
 }
 
+// A parabola, at points as far apart as steps of different sizes, and small against the time constant or not; from its
+// first two points the filter knows a line alone.
+TEST(SensorFilter, IsExactForAParabolaBehindItsSecondPoint) {
+  constexpr double tau = 0.05;
+  const auto parabola = [](double t) { return 1.0 + 2.0 * t - 30.0 * t * t; };
+  // y = s - tau s' + tau^2 s'' + c exp(-t / tau)
+  const auto settled = [&](double t) { return parabola(t) - tau * (2.0 - 60.0 * t) - 60.0 * tau * tau; };
+  SensorFilter filter(tau, 1);
+  double t = 0.0, from = 0.0, left = 0.0;
+  for (const double step : {0.01, 0.01, 0.0001, 0.02, 0.0004, 0.0006, 0.3, 0.001}) {
+    t += step;
+    const double signal = parabola(t);
+    filter.advance(step, &signal);
+    const double output = filter.output()[0];
+    if (t > 0.0201) {
+      EXPECT_NEAR(output, settled(t) + left * std::exp(-(t - from) / tau), 1e-12) << t;
+    }
+    from = t;
+    left = output - settled(t);
+  }
+}
+
+// What came before a jump says nothing of what comes behind it.
+TEST(SensorFilter, TakesNoParabolaAcrossAJump) {
+  constexpr double tau = 0.05, h = 0.01;
+  SensorFilter jumped(tau, 1);
+  const auto pass = [](SensorFilter& filter, double step, double value) { filter.advance(step, &value); };
+  pass(jumped, h, 0.0);
+  pass(jumped, h, 0.0);
+  pass(jumped, 0.0, 1.0);
+  pass(jumped, h, 1.0);
+  EXPECT_NEAR(jumped.output()[0], 1.0 - std::exp(-h / tau), 1e-14);
+}
+
 TEST(Simulation, NamesWhatIsMissingOrMisspelt) {
   AssetConfig asset = nominal_asset("eha");
   TimeSeries samples = standard_pst(asset, 50.0, 1.0);

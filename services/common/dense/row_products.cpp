@@ -70,6 +70,12 @@ void fill(RowBlock& block, const Rows& x, Eigen::Index begin) {
   for (Eigen::Index row = begin; row < end; ++row) block.add(x.data() + row * x.outerStride());
 }
 
+void fill(RowBlock& block, const Rows& x, const Eigen::VectorXd& last, Eigen::Index begin) {
+  block.clear();
+  const Eigen::Index end = std::min(begin + kAtOnce, x.rows());
+  for (Eigen::Index row = begin; row < end; ++row) block.add(x.data() + row * x.outerStride(), last(row));
+}
+
 }  // namespace
 
 RowBlock::RowBlock(Eigen::Index columns, Eigen::Index rows)
@@ -78,12 +84,23 @@ RowBlock::RowBlock(Eigen::Index columns, Eigen::Index rows)
       most_(rows),
       panels_of_rows_(static_cast<std::size_t>(panels_ * kPanel * rows), 0.0) {}
 
-void RowBlock::add(const double* row) {
+void RowBlock::copy(const double* row, Eigen::Index count) {
   double* place = panels_of_rows_.data() + rows_ * kPanel;
   Eigen::Index first = 0;
-  for (; first + kPanel <= columns_; first += kPanel, place += most_ * kPanel)
+  for (; first + kPanel <= count; first += kPanel, place += most_ * kPanel)
     std::memcpy(place, row + first, kPanel * sizeof(double));
-  std::copy_n(row + first, columns_ - first, place);
+  std::copy_n(row + first, count - first, place);
+}
+
+void RowBlock::add(const double* row) {
+  copy(row, columns_);
+  ++rows_;
+}
+
+void RowBlock::add(const double* row, double last) {
+  const Eigen::Index column = columns_ - 1;
+  copy(row, column);
+  panels_of_rows_[static_cast<std::size_t>((column / kPanel * most_ + rows_) * kPanel + column % kPanel)] = last;
   ++rows_;
 }
 
@@ -125,6 +142,20 @@ Eigen::MatrixXd gram_of_rows(const Rows& x) {
     block.add_gram_to(gram);
   }
   return gram;
+}
+
+ProductsBeside products_beside(const Rows& x, const Eigen::VectorXd& r, const Rows& y) {
+  const Eigen::Index columns = x.cols() + 1;
+  ProductsBeside products{.gram = Eigen::MatrixXd::Zero(columns, columns),
+                          .with_other = Eigen::MatrixXd::Zero(columns, y.cols())};
+  RowBlock left(columns, kAtOnce), right(y.cols(), kAtOnce);
+  for (Eigen::Index begin = 0; begin < x.rows(); begin += kAtOnce) {
+    fill(left, x, r, begin);
+    left.add_gram_to(products.gram);
+    fill(right, y, begin);
+    left.add_product_to(right, products.with_other);
+  }
+  return products;
 }
 
 Eigen::MatrixXd product_of_rows(const Rows& x, const Rows& y) {

@@ -18,6 +18,11 @@ using Rows = Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynam
 [[nodiscard]] Eigen::MatrixXd gram_of_rows(const Rows& x);
 /// X'Y of as many rows
 [[nodiscard]] Eigen::MatrixXd product_of_rows(const Rows& x, const Rows& y);
+/// [X r]'[X r] and [X r]'Y, with one look at the rows
+struct ProductsBeside {
+  Eigen::MatrixXd gram, with_other;
+};
+[[nodiscard]] ProductsBeside products_beside(const Rows& x, const Eigen::VectorXd& r, const Rows& y);
 
 /// Rows are filled in one by one; `gram` is then their C'C.
 class RowBlock {
@@ -29,12 +34,15 @@ class RowBlock {
   [[nodiscard]] bool full() const { return rows_ == most_; }
   /// The next row's `columns` values.
   void add(const double* row);
+  /// The same, the last value apart.
+  void add(const double* row, double last);
   /// C'C, all of it, added to `gram`.
   void add_gram_to(Eigen::MatrixXd& gram) const;
   /// C'D, all of it, added to `product`; as many rows in both.
   void add_product_to(const RowBlock& other, Eigen::MatrixXd& product) const;
 
  private:
+  void copy(const double* row, Eigen::Index count);
   [[nodiscard]] const double* panel(Eigen::Index which) const;
 
   Eigen::Index columns_, panels_, most_, rows_ = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sealwatch/core/wide_vectors.hpp"
 #include "sealwatch/model/law_sizes.hpp"
 #include "services/common/dense/dense.hpp"
 #include "services/common/dense/row_products.hpp"
@@ -283,51 +284,58 @@ FreeOfRecording free_of(const PemProblem& problem, std::size_t recording, const 
 
 namespace {
 
-// d residual / d unknown from d output / d quantity, rows of sample * channels + channel. `weight`: per channel. Unknowns
-// of other recordings have columns of zeros.
-void to_unknowns(const FreeOfRecording& free, const Eigen::RowVectorXd& weight, RowMatrix& jacobian) {
-  const Eigen::Index channels = weight.size(), unknowns = std::ssize(free.slope);
-  const RowMatrix scale = -weight.transpose() * Eigen::Map<const Eigen::RowVectorXd>(free.slope.data(), unknowns);
-  if (free.columns == unknowns) {  // one sample's block is contiguous: all samples are scaled by the same row
-    Eigen::Map<RowMatrix>(jacobian.data(), jacobian.rows() / channels, channels * unknowns).array().rowwise() *=
-        Eigen::Map<const Eigen::RowVectorXd>(scale.data(), scale.size()).array();
-    return;
-  }
+// Columns of unknowns that this recording does not have are zeros.
+void widen(const FreeOfRecording& free, RowMatrix& jacobian) {
+  if (free.columns == std::ssize(free.slope)) return;
   RowMatrix wide = RowMatrix::Zero(jacobian.rows(), free.columns);
-  for (Eigen::Index row = 0; row < jacobian.rows(); ++row)
-    for (Eigen::Index k = 0; k < unknowns; ++k)
-      wide(row, free.column[static_cast<std::size_t>(k)]) = scale(row % channels, k) * jacobian(row, k);
+  for (Eigen::Index row = 0; row < wide.rows(); ++row)
+    for (std::size_t k = 0; k < free.column.size(); ++k)
+      wide(row, free.column[k]) = jacobian(row, static_cast<Eigen::Index>(k));
   jacobian = std::move(wide);
+}
+
+// d value / d unknown, in the order of the Jacobian's columns.
+Eigen::RowVectorXd slopes(const FreeOfRecording& free) {
+  Eigen::RowVectorXd slope = Eigen::RowVectorXd::Zero(free.columns);
+  for (std::size_t k = 0; k < free.column.size(); ++k) slope(free.column[k]) = free.slope[k];
+  return slope;
+}
+
+// x <- factors (x - sum_j a_j x_(-j)), x_(-j) j times `past` before x; `total` grows by x.
+SEALWATCH_WIDE_VECTORS
+void whiten_row(std::span<const double> coefficients, Eigen::Index past, const double* factors, double weight,
+                Eigen::Index count, double* x, double* total) {
+  for (std::size_t j = 0; j < coefficients.size(); ++j) {
+    const double a = coefficients[j], *before = x - static_cast<Eigen::Index>(j + 1) * past;
+    for (Eigen::Index k = 0; k < count; ++k) x[k] -= a * before[k];
+  }
+  for (Eigen::Index k = 0; k < count; ++k) total[k] += x[k] *= weight * factors[k];
 }
 
 }  // namespace
 
-// r_t - sum_j a_j r_(t-j) over the innovation's standard deviation (1 for white noise); the first samples, whose past
-// is not known, are taken as they are.
-void whiten(const NoiseColour& colour, Linearisation& at) {
-  if (colour.empty()) return;
-  const Eigen::Index channels = at.simulated.cols(), samples = at.simulated.rows();
-  for (Eigen::Index c = 0; c < channels; ++c) {
-    const auto& [coefficients, innovation] = colour[static_cast<std::size_t>(c)];
-    const auto order = static_cast<Eigen::Index>(coefficients.size());
-    if (order == 0) continue;
-    for (Eigen::Index row = samples - 1; row >= order; --row) {
-      const Eigen::Index here = row * channels + c;
-      for (Eigen::Index j = 1; j <= order; ++j) {
-        const double a = coefficients[static_cast<std::size_t>(j - 1)];
-        at.residual(here) -= a * at.residual(here - j * channels);
-        at.jacobian.row(here) -= a * at.jacobian.row(here - j * channels);
+// One pass over memory, backwards: what is before a row is as it was.
+bool whiten_and_weigh(const RowsOfResiduals& rows, Linearisation& at) {
+  const Eigen::Index channels = at.simulated.cols(), columns = at.jacobian.cols();
+  Eigen::RowVectorXd total = Eigen::RowVectorXd::Zero(columns);
+  double total_residual = 0.0;
+  constexpr double kSame = 1.0;
+  for (Eigen::Index row = at.residual.size() - 1; row >= 0; --row) {
+    const Eigen::Index channel = row % channels, sample = row / channels;
+    double weight = (rows.weight.size() == 0 ? 1.0 : rows.weight(row)) / rows.noise_std(channel);
+    std::span<const double> coefficients;
+    if (!rows.colour.empty()) {
+      const ChannelColour& colour = rows.colour[static_cast<std::size_t>(channel)];
+      if (!colour.coefficients.empty() && sample >= std::ssize(colour.coefficients)) {
+        coefficients = colour.coefficients;
+        weight /= colour.innovation_std;
       }
-      at.residual(here) /= innovation;
-      at.jacobian.row(here) /= innovation;
     }
+    whiten_row(coefficients, channels, &kSame, weight, 1, at.residual.data() + row, &total_residual);
+    whiten_row(coefficients, channels * columns, rows.slopes.data(), weight, columns,
+               at.jacobian.data() + row * columns, total.data());
   }
-}
-
-void weigh(const Eigen::VectorXd& weight, Linearisation& at) {
-  if (weight.size() == 0) return;
-  at.residual.array() *= weight.array();
-  at.jacobian.array().colwise() *= weight.array();
+  return std::isfinite(total_residual) && total.allFinite();
 }
 
 Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording, const std::vector<double>& shared,
@@ -337,15 +345,13 @@ Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording
   Result<SimulatedOutputs> outputs =
       part.simulation->run(values_at(problem, recording, shared, own), free.quantity, problem.simulation_options);
   if (!outputs) return fail(outputs.error());
-  const Eigen::RowVectorXd weight = part.noise_std.cwiseInverse().transpose();
-  const RowMatrix residual = (part.simulation->recorded() - outputs->values) * weight.asDiagonal();
+  const RowMatrix residual = part.simulation->recorded() - outputs->values;
   Linearisation result{.simulated = std::move(outputs->values),
                        .residual = Eigen::Map<const Eigen::VectorXd>(residual.data(), residual.size()),
                        .jacobian = std::move(outputs->sensitivities)};
-  to_unknowns(free, weight, result.jacobian);
-  whiten(part.colour, result);
-  weigh(part.weight, result);
-  if (!result.residual.allFinite() || !result.jacobian.allFinite()) return fail("the simulation overflows");
+  widen(free, result.jacobian);
+  if (!whiten_and_weigh({part.noise_std, part.colour, part.weight, -slopes(free)}, result))
+    return fail("the simulation overflows");
   return result;
 }
 
@@ -427,11 +433,9 @@ Eigen::MatrixXd compress(const PemProblem& problem, const Linearisation& not_kno
   const Eigen::Index n = not_known.jacobian.cols() + kept.jacobian.cols();
   Places of = places(problem, n);
   of.others.push_back(n);  // the residual
-  RowMatrix moving(not_known.jacobian.rows(), not_known.jacobian.cols() + 1);
-  moving << not_known.jacobian, not_known.residual;
-  const Eigen::MatrixXd mixed = dense::product_of_rows(moving, kept.jacobian);
+  const auto [moving, mixed] = dense::products_beside(not_known.jacobian, not_known.residual, kept.jacobian);
   Eigen::MatrixXd gram(n + 1, n + 1);
-  gram(of.others, of.others) = dense::gram_of_rows(moving);
+  gram(of.others, of.others) = moving;
   gram(of.others, of.known) = mixed;
   gram(of.known, of.others) = mixed.transpose();
   gram(of.known, of.known) = kept.gram;

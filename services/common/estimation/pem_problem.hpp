@@ -103,11 +103,16 @@ struct FreeOfRecording {
 [[nodiscard]] ModelValues values_at(const PemProblem& problem, std::size_t recording, const std::vector<double>& shared,
                                     const std::vector<double>& own);
 
-/// Whitens residual and Jacobian of coloured noise, in place.
-void whiten(const NoiseColour& colour, Linearisation& at);
-
-/// Residuals and derivatives times their weights, in place.
-void weigh(const Eigen::VectorXd& weight, Linearisation& at);
+/// What turns differences of outputs and their derivatives into residuals and theirs, rows of sample * channels + channel.
+struct RowsOfResiduals {
+  const Eigen::VectorXd& noise_std;  ///< of each channel
+  const NoiseColour& colour;         ///< of each channel; empty: white
+  const Eigen::VectorXd& weight;     ///< of each row; empty: 1
+  Eigen::RowVectorXd slopes;         ///< factors of the Jacobian's columns
+};
+/// In place: over the noise, or of coloured noise r_t - sum_j a_j r_(t-j) over the innovation's standard deviation (the
+/// first samples, whose past is not known, as they are), times the weight. False where a number is not finite.
+[[nodiscard]] bool whiten_and_weigh(const RowsOfResiduals& rows, Linearisation& at);
 
 /// An Error when the simulation fails there.
 [[nodiscard]] Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording,

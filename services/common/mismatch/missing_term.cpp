@@ -66,18 +66,18 @@ Result<Columns> columns_of(const SimulatedPoint& at, const Knots& knots, const s
                     .jacobian = RowMatrix::Zero(rows, unknowns + count)};
   for (Eigen::Index row = 0; row < rows; ++row) {
     const Eigen::Index channel = row % channels, sample = row / channels;
-    const double weight = 1.0 / part.noise_std(channel);
-    all.residual(row) = weight * (part.simulation->recorded()(sample, channel) - all.simulated(sample, channel));
+    all.residual(row) = part.simulation->recorded()(sample, channel) - all.simulated(sample, channel);
     const Eigen::Index known = run->sensitivities.cols();
-    all.jacobian.row(row).head(known) = weight * run->sensitivities.row(row);
+    all.jacobian.row(row).head(known) = run->sensitivities.row(row);
     if (!sites.empty() || channel != static_cast<Eigen::Index>(sensor)) continue;
     const auto [knot, share] = knots.at(part.time_s[static_cast<std::size_t>(sample)]);
-    all.jacobian(row, known + static_cast<Eigen::Index>(knot)) = weight * (1.0 - share);
-    all.jacobian(row, known + static_cast<Eigen::Index>(knot) + 1) = weight * share;
+    all.jacobian(row, known + static_cast<Eigen::Index>(knot)) = 1.0 - share;
+    all.jacobian(row, known + static_cast<Eigen::Index>(knot) + 1) = share;
   }
   run->sensitivities.resize(0, 0);
-  whiten(part.colour, all);
-  if (!all.residual.allFinite() || !all.jacobian.allFinite()) return fail("the simulation overflows");
+  const Eigen::VectorXd no_weight;
+  if (!whiten_and_weigh({part.noise_std, part.colour, no_weight, Eigen::RowVectorXd::Ones(all.jacobian.cols())}, all))
+    return fail("the simulation overflows");
   return Columns{.own = all.jacobian.leftCols(unknowns),
                  .hats = all.jacobian.rightCols(count),
                  .residual = std::move(all.residual)};

@@ -127,11 +127,9 @@ Result<Pass> sensitivity_pass(const FittedModel& model, std::size_t recording, c
                       .jacobian = RowMatrix::Zero(samples * channels, unknowns)};
   for (Eigen::Index row = 0; row < samples * channels; ++row) {
     const Eigen::Index channel = row % channels, sample = row / channels;
-    const double weight = 1.0 / part.noise_std(channel);
-    known.residual(row) = weight * (part.simulation->recorded()(sample, channel) - known.simulated(sample, channel));
+    known.residual(row) = part.simulation->recorded()(sample, channel) - known.simulated(sample, channel);
     for (std::size_t k = 0; k < free.slope.size(); ++k)
-      known.jacobian(row, free.column[k]) =
-          weight * free.slope[k] * outputs->sensitivities(row, static_cast<Eigen::Index>(k));
+      known.jacobian(row, free.column[k]) = free.slope[k] * outputs->sensitivities(row, static_cast<Eigen::Index>(k));
   }
   Pass pass;
   pass.part_ = &part;
@@ -168,8 +166,8 @@ Result<Pass> sensitivity_pass(const FittedModel& model, std::size_t recording, c
              sensor_column(candidate, column, known.simulated, part.time_s, static_cast<Eigen::Index>(channel))});
     }
   }
-  whiten(part.colour, known);
-  weigh(part.weight, known);
+  if (!whiten_and_weigh({part.noise_std, part.colour, part.weight, Eigen::RowVectorXd::Ones(unknowns)}, known))
+    return fail("the simulation overflows");
   pass.free = std::move(known.jacobian);
   pass.residual = std::move(known.residual);
   return pass;

@@ -63,6 +63,19 @@ TEST(RowProducts, AreThoseOfTheMatrices) {
   EXPECT_LT((product_of_rows(x, y) - x.transpose() * y).cwiseAbs().maxCoeff(), 1e-11);
 }
 
+// The column beside lies in the last panel, in one of its own behind full ones, or alone.
+TEST(RowProducts, TakesAColumnThatLiesApart) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  for (const Eigen::Index columns : {0, 5, 7, 8, 19}) {
+    const RowMajor all = random_rows(301, columns + 4);
+    const Eigen::VectorXd beside = all.col(columns);
+    const auto x = all.leftCols(columns), whole = all.leftCols(columns + 1), y = all.rightCols(3);
+    const ProductsBeside products = products_beside(x, beside, y);
+    EXPECT_LT((products.gram - whole.transpose() * whole).cwiseAbs().maxCoeff(), 1e-11);
+    EXPECT_LT((products.with_other - whole.transpose() * y).cwiseAbs().maxCoeff(), 1e-11);
+  }
+}
+
 TEST(RowProducts, OfNoRowsOrColumnsAreZeroOrEmpty) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   EXPECT_EQ(gram_of_rows(RowMajor(0, 3)), Eigen::MatrixXd::Zero(3, 3));

@@ -22,9 +22,9 @@ constexpr double kNoise = 1.1;       // times the noise's variance: its own size
 constexpr double kTimeShare = 0.25;  // of the time limit: a start, and no more
 constexpr int kIterations = 8;       // to see whether simulations come nearer where they are held
 constexpr double kEnoughRows = 8000.0;
-// Within so many distances between samples: what adds up slowly shows; and, where that is still far off, noise is
-// averaged and little drifts.
-constexpr double kLoosely = 100.0, kTightly = 10.0;
+// Within so many distances between samples: what adds up slowly shows; where that is still far off, noise is averaged and
+// little drifts; and where the plant swings faster than that, a few samples still see it swing.
+constexpr double kLoosely = 100.0, kTightly = 10.0, kMostTightly = 3.0;
 
 double distance_s(const Data& data) {
   double longest_s = 0.0;
@@ -127,13 +127,13 @@ struct Held {
 std::optional<Held> hold(const FittedModel& baseline, const Data& data, const Deadline& until, int threads) {
   const bool in_windows = !data.groups.empty();
   if (in_windows && !is_far_off(baseline)) return std::nullopt;
-  for (const double samples : {kLoosely, kTightly}) {
-    if (in_windows && samples == kLoosely) continue;
+  for (const double samples : {kLoosely, kTightly, kMostTightly}) {
+    if (in_windows && samples != kTightly) continue;
     Data held = held_data(data, samples, until);
     Result<FittedModel> model = fit_model(baseline.asset, held, &baseline, threads, in_windows ? 0 : kIterations);
     if (!model) continue;
     const bool nearer = share_explained(misfit_of(baseline), misfit_of(*model)) >= kExplainedAtLeast;
-    if (!is_far_off(*model) || (samples == kTightly && nearer && !in_windows))
+    if (!is_far_off(*model) || (samples < kLoosely && nearer && !in_windows))
       return Held{std::move(held), std::move(*model)};
   }
   return std::nullopt;

@@ -448,7 +448,7 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
     if (known != singles.end()) singles.erase(known);  // its other starts stay
   }
   const auto refit_from = [&](const Trial& from, const std::vector<std::vector<LawStart>>& starts) {
-    RefitOptions refits;
+    RefitOptions refits{.again_smaller = gross};
     for (const Trial& trial : trials) refits.to_beat = std::min(refits.to_beat, trial.model->misfit);
     for (Trial& trial : refit(from, starts, data, options.threads, refits)) trials.push_back(std::move(trial));
   };

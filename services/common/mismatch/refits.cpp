@@ -204,6 +204,7 @@ class Refits {
       if (refits.empty()) continue;
       std::ranges::stable_sort(refits, {}, [](const Refit& refit) { return refit.model->misfit; });
       bound_ = bound_after(*refits.front().model);
+      least_ = refits.front().model->misfit;
     }
     return refits;
   }
@@ -213,10 +214,9 @@ class Refits {
     if (!may_come_to_bound(added.front())) return {};
     Refit refit = start(added, 1.0, threads);
     const bool cut = refit.model != nullptr && refit.model->optimum.out_of_reach;
-    const bool worse = options_.again_smaller && !first_ && !cut && options_.in_place_of.empty() &&
-                       excess(*from_.model) < kFar &&
+    const bool worse = options_.again_smaller && !cut && options_.in_place_of.empty() && excess(*from_.model) < kFar &&
                        (refit.model == nullptr || refit.model->misfit > from_.model->misfit);
-    if (!worse) return refit;
+    if (!worse || (first_ && !may_be_best(added.front()))) return refit;
     Refit again = start(added, kSmaller, threads);
     const bool better = again.model != nullptr && (refit.model == nullptr || again.model->misfit < refit.model->misfit);
     return better ? again : refit;
@@ -247,6 +247,10 @@ class Refits {
     if (!model && !beside.own.empty()) model = set_out({});  // where the linear model leads, nothing can be simulated
     if (model) refit.model = std::make_shared<FittedModel>(std::move(*model));
     return refit;
+  }
+
+  [[nodiscard]] bool may_be_best(const LawStart& start) const {
+    return start.asked_at - kOptimisticOfPromise * start.promised <= least_;
   }
 
   [[nodiscard]] bool may_come_to_bound(const LawStart& start) const {
@@ -289,8 +293,9 @@ class Refits {
   int threads_;
   const RefitOptions& options_;
   bool gross_;
-  SearchBound bound_;                        ///< of the first round
-  std::shared_ptr<const FittedModel> best_;  ///< of those that went on
+  SearchBound bound_;                                       ///< of the first round
+  double least_ = std::numeric_limits<double>::infinity();  ///< misfit of the refits that came first
+  std::shared_ptr<const FittedModel> best_;                 ///< of those that went on
 };
 
 }  // namespace

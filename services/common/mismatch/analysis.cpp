@@ -34,7 +34,8 @@ Result<Explanation> Analysis::analyse() {
   if (const auto runaway = follows_no_machine())
     return tell_no_law(runs_away(in_words(*runaway), advice_for_runaway()));
   if (const Status status = look_for_what_is_missing(); !status)
-    return tell_no_law(time_.in_time("what is missing") ? cannot_be_asked(status.error()) : time_was_up());
+    return tell_no_law(time_.in_time("what is missing") ? cannot_be_asked(status.error())
+                                                        : time_was_up(options_.time_limit_s));
   if (at_rest(*baseline_, prepared(fit_))) why_none_ = nothing_moves();
   if (const auto part = driven_unseen(); part && !why_none_) why_none_ = drives_unseen(*part);
   if (!why_none_ && time_.in_time("whether something changed between the tests")) look_for_a_change();

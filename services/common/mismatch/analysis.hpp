@@ -172,7 +172,9 @@ class Analysis {
   void put_in_words();
   // A law that has no value where the plant goes may be what is missing.
   void note_laws_not_asked();
-  static void say_what_was_cut(Explanation& result);
+  void say_what_was_cut(Explanation& result) const;
+  /// What is left may be by what was not asked, or not listed: a law is no surer than the share that is explained.
+  static void limit_probabilities(Explanation& result);
   /// Of the laws found without one of them, the explanation that predicts held-out recordings best and makes no channel
   /// worse there; nothing where each does.
   std::optional<Trial> without_what_makes_it_worse();

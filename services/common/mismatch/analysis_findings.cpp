@@ -123,6 +123,7 @@ Status Analysis::finish() {
       takes_back_what_does_not_explain())
     return finish();
   result_.explained_share = explained_share();
+  if (excess(*best_.model) > kGross) limit_probabilities(result_);
   result_.power = power_of(best_.effects.empty() ? naming_.first : naming_.last, plant());
   say_where();
   for (const std::string& remark : naming_.remarks) result_.notes.push_back(remark);
@@ -218,15 +219,18 @@ void Analysis::note_laws_not_asked() {
   }
 }
 
-void Analysis::say_what_was_cut(Explanation& result) {
-  if (result.not_asked.empty()) result.not_asked.emplace_back("further steps of the fit in progress");
-  result.notes.push_back("Not tried, as time was up: " + joined(result.not_asked, "; and ") + ".");
-  // What is not explained may be by what was not asked: a law is no surer than its share.
+void Analysis::limit_probabilities(Explanation& result) {
   for (FoundEffect& effect : result.effects) {
     effect.probability = std::min(effect.probability, result.explained_share);
     effect.element_probability = std::min(effect.element_probability, result.explained_share);
   }
-  const std::string more = "Give the analysis more time (--time-limit)";
+}
+
+void Analysis::say_what_was_cut(Explanation& result) const {
+  if (result.not_asked.empty()) result.not_asked.emplace_back("further steps of the fit in progress");
+  result.notes.push_back("Not tried, as time was up: " + joined(result.not_asked, "; and ") + ".");
+  limit_probabilities(result);
+  const std::string more = more_time_than(options_.time_limit_s);
   if (result.next_test.starts_with(more)) return;
   result.summary = "The time limit ended the search: not everything was tried. " + result.summary;
   const bool alone = result.verdict == Verdict::undetermined || result.next_test.empty();

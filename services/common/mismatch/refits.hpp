@@ -49,8 +49,8 @@ struct RefitOptions {
   /// The starts have the strengths at which they do what these effects did (replacement.hpp). Else strengths come first,
   /// and shapes are held until they fit.
   bool sized = false;
-  /// A refit that ends worse than what it set out from starts again with a tenth of its strength (for alternatives; a
-  /// search takes the law that is easier to find).
+  /// A refit that ends worse than what it set out from starts again with a tenth of its strength (for alternatives, and
+  /// in a gross misfit; near the noise a search takes the law that is easier to find).
   bool again_smaller = false;
   /// What a first round comes to is enough.
   bool first_round_only = false;

@@ -19,9 +19,14 @@ WhyNone cannot_be_asked(const Error& why) {
           .next_test = "Check the recorded input around that time, or analyse without this recording."};
 }
 
-WhyNone time_was_up() {
+std::string more_time_than(double limit_s) {
+  constexpr double kMore = 4.0;  // times the limit: few searches take longer
+  return "Give the analysis more time (--time-limit " + number(kMore * limit_s, 2) + ")";
+}
+
+WhyNone time_was_up(double limit_s) {
   return {.summary = "The time limit ended the analysis before the search for what is missing.",
-          .next_test = "Give the analysis more time (--time-limit), or fewer and shorter recordings."};
+          .next_test = more_time_than(limit_s) + ", or fewer and shorter recordings."};
 }
 
 WhyNone nothing_moves() {

@@ -19,7 +19,8 @@ struct WhyNone {
 /// The model follows the recordings, but its sensitivities cannot be simulated.
 [[nodiscard]] WhyNone cannot_be_asked(const Error& why);
 /// The time limit came before the first question.
-[[nodiscard]] WhyNone time_was_up();
+[[nodiscard]] WhyNone time_was_up(double limit_s);
+[[nodiscard]] std::string more_time_than(double limit_s);
 [[nodiscard]] WhyNone nothing_moves();
 /// `part`: driven by something that is not recorded.
 [[nodiscard]] WhyNone drives_unseen(const PlantPart& part);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "sealwatch/core/file.hpp"
 #include "sealwatch/model/plant_description.hpp"
@@ -11,10 +12,13 @@
 namespace sealwatch {
 namespace {
 
-/// The plant's file where it has one, as the asset may be written anywhere.
-std::string model_of(const AssetConfig& asset) {
+/// The plant's file where it has one, as seen from a folder; "": the asset may be read anywhere.
+std::string model_of(const AssetConfig& asset, const std::filesystem::path& folder) {
   const auto plant = find_plant(asset.model);
-  return plant && !(*plant)->file.empty() ? (*plant)->file : asset.model;
+  if (!plant || (*plant)->file.empty()) return asset.model;
+  std::error_code none;
+  const std::filesystem::path seen = folder.empty() ? "" : std::filesystem::relative((*plant)->file, folder, none);
+  return seen.empty() ? (*plant)->file : seen.string();
 }
 
 using Entries = std::vector<std::pair<std::string, std::string>>;
@@ -110,31 +114,45 @@ void write_physics(YAML::Emitter& out, const AssetConfig& asset) {
   out << YAML::EndSeq;
 }
 
-}  // namespace
+/// A machine with a model of its own need not have one.
+void write_pst(YAML::Emitter& out, const AssetConfig& asset) {
+  const auto entries_of = [](const PstSetting& pst) {
+    return Entries{{"start", text::exact(pst.start_m)},
+                   {"stroke", text::exact(pst.stroke_m)},
+                   {"speed", text::exact(pst.speed_m_s)},
+                   {"hold", text::exact(pst.hold_s)},
+                   {"interval_months", text::exact(pst.interval_months)}};
+  };
+  const Entries entries = entries_of(asset.pst);
+  const auto plant = find_plant(asset.model);
+  const bool has_own_model = plant && !(*plant)->file.empty();
+  if (!has_own_model || entries != entries_of({})) write_flow(out, "pst", entries);
+}
 
-std::string asset_to_yaml(const AssetConfig& asset) {
+std::string yaml_of(const AssetConfig& asset, const std::filesystem::path& folder) {
   YAML::Emitter out;
   out << YAML::BeginMap;
   for (const auto& [key, value] : {std::pair{"asset_id", asset.asset_id},
                                    {"site", asset.site},
                                    {"segment", asset.segment},
-                                   {"model", model_of(asset)}})
+                                   {"model", model_of(asset, folder)}})
     if (!value.empty()) out << YAML::Key << key << YAML::Value << value;
   write_parameters(out, asset);
   write_sensors(out, asset);
   write_condition(out, asset);
-  write_flow(out, "pst",
-             {{"start", text::exact(asset.pst.start_m)},
-              {"stroke", text::exact(asset.pst.stroke_m)},
-              {"speed", text::exact(asset.pst.speed_m_s)},
-              {"hold", text::exact(asset.pst.hold_s)},
-              {"interval_months", text::exact(asset.pst.interval_months)}});
+  write_pst(out, asset);
   write_limits(out, asset);
   write_physics(out, asset);
   out << YAML::EndMap;
   return std::string(out.c_str()) + "\n" + channel_map_to_yaml(asset.channel_map);
 }
 
-Status save_asset(const AssetConfig& asset, const std::string& file) { return write_file(file, asset_to_yaml(asset)); }
+}  // namespace
+
+std::string asset_to_yaml(const AssetConfig& asset) { return yaml_of(asset, {}); }
+
+Status save_asset(const AssetConfig& asset, const std::string& file) {
+  return write_file(file, yaml_of(asset, std::filesystem::absolute(file).parent_path()));
+}
 
 }  // namespace sealwatch

@@ -1,8 +1,15 @@
 #!/usr/bin/env bash
 # Installs, builds and runs every test of sealwatch. The last lines are ctest's own summary.
 #   tests/run.sh                 everything
-#   tests/run.sh -R forecast     what follows goes to ctest
+#   tests/run.sh -R forecast     builds everything; what follows goes to ctest
+# One program alone: ninja -C build/release forecast_test && ctest --test-dir build/release -R '^forecast_test'
 set -euo pipefail
+case "${1:-}" in
+  -h | --help)
+    sed -n '2,/^set/{/^#/s/^# \?//p}' "$0"
+    exit
+    ;;
+esac
 cd "$(dirname "$0")/.."
 deploy/install_packages.sh test
 deploy/build.sh release -DSEALWATCH_TESTS=ON

@@ -78,7 +78,9 @@ void add_status(CommandLine& line) {
   const auto options = std::make_shared<StatusOptions>();
   CLI::App* status = line.command("status", "show the services' state and the latest advice", "sealwatch status",
                                   [options] { return run_status(*options); });
-  CommandLine::one_means(status, "a service, an asset or an alarm needs attention");
+  CommandLine::one_means(status,
+                         "a service is in trouble, or an active alarm says that something is not seen (not those that "
+                         "ask for maintenance)");
   CommandLine::add_config(status, options->config);
   status->add_option("--seconds", options->seconds, "how long to listen")
       ->check(CLI::Range(0.5, 60.0))

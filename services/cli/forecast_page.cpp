@@ -311,17 +311,24 @@ std::string figures(const ForecastQuestion& question, const ForecastPanel::Answe
   return html.append("</div>\n");
 }
 
+/// " Of the dates compared below, 2031-06-01 costs least."; "" where costs do not tell.
+std::string cheapest_in_words(const std::vector<DecisionOption>& decision) {
+  const auto cheapest = std::ranges::find(decision, true, &DecisionOption::cheapest);
+  return cheapest == decision.end() ? "" : " Of the dates compared below, " + cheapest->label + " costs least.";
+}
+
 /// What follows where no service has given advice: from the forecast alone.
-Headline headline_without_advice(const ForecastQuestion& question, const Forecast& primary) {
+Headline headline_without_advice(const ForecastQuestion& question, const Forecast& primary,
+                                 const std::vector<DecisionOption>& decision) {
   const auto day = [&](double months) { return format_date(add_months(question.request.now, months)); };
   const std::string why = outlook(primary) + ".";
   switch (primary.state) {
     case ForecastState::ok:
       return {"Book a vessel by " + day(primary.rul_p10_months - question.months_to_vessel) + " to replace the " +
                   question.part + " before " + day(primary.rul_p10_months) + ".",
-              why + " By that day one in ten would have failed; a vessel takes " +
-                  text::in_months(question.months_to_vessel) +
-                  ". The advisory of the services may differ: it needs confirmation by several tests."};
+              "By " + day(primary.rul_p10_months) + " one in ten would have failed; a vessel takes " +
+                  text::in_months(question.months_to_vessel) + "." + cheapest_in_words(decision) + " " + why +
+                  " The advisory of the services may differ: it needs confirmation by several tests."};
     case ForecastState::past_threshold:
       return {"Replace the " + question.part + " now: it has reached its limit.",
               why + " Follow the procedure for a valve that may not close."};
@@ -340,11 +347,12 @@ std::string heading_of(std::string part) {
   return part;
 }
 
-std::string head(const ForecastQuestion& question, const ForecastPanel::Answer& answer) {
+std::string head(const ForecastQuestion& question, const ForecastPanel::Answer& answer,
+                 const std::vector<DecisionOption>& decision) {
   const std::string of = question.asset_id.empty() ? "" : " of " + question.asset_id;
   const Forecast& primary = answer.forecasts.front();
   const Headline headline =
-      question.advice ? headline_of(*question.advice) : headline_without_advice(question, primary);
+      question.advice ? headline_of(*question.advice) : headline_without_advice(question, primary, decision);
   std::string html = "<h1>" + report::escaped(heading_of(question.part)) + report::escaped(of) + "</h1>";
   html.append("<p class=\"muted small\">").append(in_lines(history_words(question))).append("</p>");
   html.append("<div class=\"banner ").append(colour_of(question.advice, primary.state));
@@ -358,7 +366,7 @@ std::string head(const ForecastQuestion& question, const ForecastPanel::Answer& 
 
 Result<std::string> forecast_body(const ForecastQuestion& question, const ForecastPanel::Answer& answer,
                                   const std::vector<DecisionOption>& decision) {
-  if (question.tests == 0) return head(question, answer) + forecast_decision_part(question, answer, decision);
+  if (question.tests == 0) return head(question, answer, decision) + forecast_decision_part(question, answer, decision);
   const auto primary = forecast::make_forecaster(question.forecasters.front());
   if (!primary) return fail(primary.error());
   forecast::ForecastRequest request = question.request;
@@ -366,7 +374,7 @@ Result<std::string> forecast_body(const ForecastQuestion& question, const Foreca
   std::vector<ConditionForecast> conditions;
   if (answer.forecasts.front().state == ForecastState::ok)
     conditions = (*primary)->predict_conditions(request, months_ahead(request.now, view_months(answer)));
-  std::string body = head(question, answer);
+  std::string body = head(question, answer, decision);
   // Drawn for either width: scaled down, its letters could not be read on a phone.
   for (const auto& [name, width] : {std::pair{"wide", kWide}, {"narrow", kNarrow}})
     body += std::string("<div class=\"") + name + "\">" + report::to_svg(course(question, answer, conditions, width)) +

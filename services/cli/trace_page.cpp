@@ -71,7 +71,9 @@ std::string channel_part(const trace::TraceComparison& comparison, const Channel
 
 std::string trace_page(const trace::TraceComparison& comparison, const std::string& recorded,
                        const std::string& simulated) {
-  const auto name = [](const std::string& path) { return std::filesystem::path(path).filename().string(); };
+  const auto file = [](const std::string& path) { return std::filesystem::path(path).filename().string(); };
+  const bool alike = file(recorded) == file(simulated);  // of two folders
+  const auto name = [&](const std::string& path) { return alike ? path : file(path); };
   std::string body = "<h1>Simulated trace against recording</h1>";
   body += report::paragraph("Simulated: " + name(simulated) + ". Recorded: " + name(recorded) + ".", "muted small");
   body.append("<div class=\"banner ").append(comparison.consistent ? "good" : "bad").append("\"><p class=\"verdict\">");

@@ -299,10 +299,11 @@ JointFit report_fit(const AssetConfig& asset, const PemProblem& problem, const P
   fit.report.channels = pooled(fit.recordings);
   if (fit.recordings.size() == 1 && fit.recordings.front().load.name == "load_factor")
     fit.report.load_factor = fit.recordings.front().load.value;
-  if (uncertainty.inflation > 1.0)
+  constexpr double kTold = 1.005;  // less reads as "a factor of up to 1"
+  if (uncertainty.inflation > kTold)
     fit.report.termination += "; residuals are coloured, standard errors raised by a factor of up to " +
                               text::in_sentence(uncertainty.inflation);
-  if (uncertainty.by_input > 1.0)
+  if (uncertainty.by_input > kTold)
     fit.report.termination +=
         "; what the input does between its samples is not recorded, standard errors raised by a factor of up to " +
         text::in_sentence(uncertainty.by_input);

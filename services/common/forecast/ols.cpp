@@ -158,9 +158,13 @@ PredictiveForecast OlsForecaster::answer(const ForecastRequest& request) const {
   if (!line) return {say(forecast, ForecastState::insufficient_history, "fewer than three tests since it was new")};
   const double p = line->no_fall_probability();
   auto remaining = crossing_distribution(*line, request.threshold, axis);
-  if (p > options_.significance || !remaining)
+  if (p > options_.significance)
     return {say(forecast, ForecastState::no_significant_trend,
                 "the condition does not fall significantly over these months (p = " + text::in_sentence(p, 2) + ")")};
+  if (!remaining)
+    return {say(forecast, ForecastState::no_significant_trend,
+                "the condition falls (p = " + text::in_sentence(p, 2) +
+                    "), but this line may never reach the limit: no date is given")};
   if (remaining->quantile(0.5) <= 0.0)
     return {say_past_threshold(forecast, request,
                                "the fitted line is at " +

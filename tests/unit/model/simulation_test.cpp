@@ -6,9 +6,11 @@
 
 #include <numbers>
 #include <random>
+#include <set>
 #include <thread>
 
 #include "services/common/model/model_simulator.hpp"
+#include "services/common/model/plants/eha/model.hpp"
 #include "services/common/model/recorded_input.hpp"
 #include "services/common/model/sensor_filter.hpp"
 #include "tests/unit/model/standard_pst.hpp"
@@ -219,6 +221,32 @@ TEST(SensorFilter, IsExactForARampAndPassesDirectlyWithoutALag) {
     EXPECT_NEAR(filter.output()[0], 3.0 * (t - tau * (1.0 - std::exp(-t / tau))), 1e-14);
     EXPECT_EQ(direct.output()[0], ramp);
   }
+}
+
+// Outputs are simulated without the laws where none acts at a site that they see: no other must be seen, at any opening of
+// the valve.
+TEST(Simulation, EhaNamesTheSitesThatItsOutputsSee) {
+  constexpr std::size_t kSites = Eha::kSites.size();
+  using Seen = Dual<static_cast<int>(kSites)>;
+  const AssetConfig asset = nominal_asset("eha");
+  EhaParameters<double> parameters{};
+  parameters.visit(
+      [&](std::string_view name, double& value) {
+        value = asset.parameters.contains(std::string(name)) ? asset.parameter(std::string(name)) : 0.0;
+      },
+      parameters);
+  std::array<Seen, kSites> extra;
+  for (std::size_t site = 0; site < kSites; ++site) extra[site] = Seen::variable(0.0, static_cast<int>(site));
+  std::set<std::size_t> seen;
+  for (const double above_Pa : {-5e6, -1e5, 1e4, 1e5, 5e5, 5e6})
+    for (std::size_t k = 0; k < EhaModel::kOutputs.size(); ++k) {
+      if (EhaModel::kOutputs[k].state >= 0) continue;
+      const std::array<double, Eha::kStates> state = {4.0, 2.0, 15.0, 1.1e7 + above_Pa, 2e6, 1.1e7, 1e6, 1e-3, 0.06};
+      const auto output = EhaModel::output(static_cast<int>(k), state, {}, parameters, extra);
+      for (std::size_t site = 0; site < kSites; ++site)
+        if (output.derivative[site] != 0.0) seen.insert(site);
+    }
+  EXPECT_EQ(seen, std::set<std::size_t>(EhaModel::kOutputSites.begin(), EhaModel::kOutputSites.end()));
 }
 
 // A parabola, at points as far apart as steps of different sizes, and small against the time constant or not; from its

@@ -311,10 +311,10 @@ std::string figures(const ForecastQuestion& question, const ForecastPanel::Answe
   return html.append("</div>\n");
 }
 
-/// " Of the dates compared below, 2031-06-01 costs least."; "" where costs do not tell.
+/// " Cheapest of the choices compared below: 2031-06-01."; "" where costs do not tell.
 std::string cheapest_in_words(const std::vector<DecisionOption>& decision) {
   const auto cheapest = std::ranges::find(decision, true, &DecisionOption::cheapest);
-  return cheapest == decision.end() ? "" : " Of the dates compared below, " + cheapest->label + " costs least.";
+  return cheapest == decision.end() ? "" : " Cheapest of the choices compared below: " + cheapest->label + ".";
 }
 
 /// What follows where no service has given advice: from the forecast alone.

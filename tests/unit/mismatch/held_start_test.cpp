@@ -56,48 +56,53 @@ law_sizes: {N: 2.5e-3, N s/m: 1.25e-4, m: 0.125, m/s: 100}
 
 /// A mass with what takes its force at a position and a speed.
 struct Machine {
-  double mass_kg, largest_N, noise_m;
+  double mass_kg, largest_N, noise_m, sample_s, duration_s, lasts_s;
   double (*lost_N)(double x, double v);
 };
 
-constexpr Machine kTheCart = {kMass_kg, 12.0, 1e-4, [](double, double v) {
+constexpr Machine kTheCart = {kMass_kg, 12.0, 1e-4, 0.01, 20.0, 1.2, [](double, double v) {
                                 return kViscous_N_s_m * v + kDry_N * std::tanh(v / 1e-3) +
                                        kDrag_N_s2_m2 * v * std::abs(v);
                               }};
 constexpr double kHardening_N = 50e3;  // at 50 mm
-constexpr Machine kTheTable = {
-    35.0, 150.0, 5e-6, [](double x, double v) { return 220.0 * v + 48e3 * x + kHardening_N * std::pow(x / 0.05, 3); }};
+constexpr Machine kTheTable = {35.0, 220.0, 5e-6, 0.004, 8.0, 0.4, [](double x, double v) {
+                                 return 220.0 * v + 48e3 * x + kHardening_N * std::pow(x / 0.05, 3);
+                               }};
 
-// Random steps of force; explicit Euler steps of 50 us: other code than the simulation's.
-Recording ride(const std::string& name, unsigned seed, const Machine& machine = kTheCart) {
-  constexpr double kSample_s = 0.01, kDuration_s = 20.0, kRamp_s = 0.05;
-  constexpr int kSubsteps = 200, kSamples = static_cast<int>(kDuration_s / kSample_s);
+// Random steps of force, or with `sweep_N` a sweep from 0.5 to 12 Hz; explicit Euler steps of 50 us: other code than the simulation's.
+Recording ride(const std::string& name, unsigned seed, const Machine& machine = kTheCart, double sweep_N = 0.0) {
+  constexpr double kRamp_s = 0.05, kStep_s = 50e-6;
+  const int substeps = static_cast<int>(std::lround(machine.sample_s / kStep_s)),
+            samples = static_cast<int>(std::lround(machine.duration_s / machine.sample_s));
   std::mt19937 random(seed);
-  std::uniform_real_distribution<double> level(-machine.largest_N, machine.largest_N), lasts(0.3, 1.2);
+  std::uniform_real_distribution<double> level(-machine.largest_N, machine.largest_N),
+      lasts(0.25 * machine.lasts_s, machine.lasts_s);
   std::normal_distribution<double> noise(0.0, machine.noise_m);
   Series force{"force", "N", 0.0, {}}, position{"position", "m", 0.0, {}};
   double from = 0.0, to = 0.0, since_s = 0.0, until_s = 0.4;
-  for (int sample = 0; sample <= kSamples; ++sample) {
-    const double t = sample * kSample_s;
+  for (int sample = 0; sample <= samples; ++sample) {
+    const double t = sample * machine.sample_s;
     if (t >= until_s) {
       from = to;
       to = level(random);
       since_s = t;
       until_s = t + lasts(random);
     }
-    force.values.push_back(from + (to - from) * std::min(1.0, (t - since_s) / kRamp_s));
+    const double steps = from + (to - from) * std::min(1.0, (t - since_s) / kRamp_s),
+                 turns = 0.5 * t + 0.5 * 11.5 * t * t / machine.duration_s;
+    force.values.push_back(sweep_N > 0.0 ? sweep_N * std::sin(2.0 * M_PI * turns) : steps);
   }
   Recording recording;
   recording.recording_id = name;
   double x = 0.0, v = 0.0;
-  for (int sample = 0; sample < kSamples; ++sample) {
-    recording.samples.time_s.push_back(sample * kSample_s);
+  for (int sample = 0; sample < samples; ++sample) {
+    recording.samples.time_s.push_back(sample * machine.sample_s);
     position.values.push_back(x + noise(random));
     const double u = force.values[static_cast<std::size_t>(sample)],
                  next = force.values[static_cast<std::size_t>(sample) + 1];
-    for (int k = 0; k < kSubsteps; ++k) {
-      v += kSample_s / kSubsteps * (u + (next - u) * k / kSubsteps - machine.lost_N(x, v)) / machine.mass_kg;
-      x += kSample_s / kSubsteps * v;
+    for (int k = 0; k < substeps; ++k) {
+      v += kStep_s * (u + (next - u) * k / substeps - machine.lost_N(x, v)) / machine.mass_kg;
+      x += kStep_s * v;
     }
   }
   force.values.pop_back();
@@ -171,9 +176,9 @@ TEST(HeldStart, WhatAFarOffSimulationLacksIsNamed) {
 /// Its springs harden, a third of their force at the largest displacement: held within tens of samples it is still out of
 /// step, and free runs alone name a load around one position that leaves a hundred times the noise.
 TEST(HeldStart, WhatAFastPlantLacksIsNamed) {
-  const auto found =
-      mismatch::explain(asset_of("table", kTable), std::vector{ride("one", 1, kTheTable), ride("two", 2, kTheTable)},
-                        std::vector{ride("three", 3, kTheTable)});
+  const auto found = mismatch::explain(asset_of("table", kTable),
+                                       std::vector{ride("one", 1, kTheTable, 60.0), ride("two", 2, kTheTable, 150.0)},
+                                       std::vector{ride("three", 3, kTheTable, 110.0)});
   ASSERT_TRUE(found) << found.error().describe();
   ASSERT_EQ(found->verdict, MismatchVerdict::mismatch) << found->summary;
   ASSERT_EQ(found->effects.size(), 1U) << found->summary;

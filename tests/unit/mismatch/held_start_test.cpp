@@ -69,7 +69,8 @@ constexpr Machine kTheTable = {35.0, 220.0, 5e-6, 0.004, 8.0, 0.4, [](double x, 
                                  return 220.0 * v + 48e3 * x + kHardening_N * std::pow(x / 0.05, 3);
                                }};
 
-// Random steps of force, or with `sweep_N` a sweep from 0.5 to 12 Hz; explicit Euler steps of 50 us: other code than the simulation's.
+// Random steps of force, or with `sweep_N` a sweep from 0.5 to 12 Hz; explicit Euler steps of 50 us: other code than the
+// simulation's.
 Recording ride(const std::string& name, unsigned seed, const Machine& machine = kTheCart, double sweep_N = 0.0) {
   constexpr double kRamp_s = 0.05, kStep_s = 50e-6;
   const int substeps = static_cast<int>(std::lround(machine.sample_s / kStep_s)),

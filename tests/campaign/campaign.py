@@ -192,6 +192,14 @@ class World:
             log.write(done.stderr)
         return done
 
+    def says(self):
+        """For whoever looks into a failure and has this text alone."""
+        status = self.run("status", "--seconds", "3").stdout
+        alive = [name for name, process in self.processes.items() if process.poll() is None]
+        last = {name: (self.folder / f"{name}.log").read_text(errors="replace").splitlines()[-12:]
+                for name in ("replay", "services") if (self.folder / f"{name}.log").exists()}
+        return "\n".join([f"processes that run: {alive}", status, *(f"{name}: {line}" for name in last for line in last[name])])
+
     def sizes(self):
         """By service: own memory in MB, and open descriptors."""
         return {name: (memory_MB(process.pid, "RssAnon"), len(os.listdir(f"/proc/{process.pid}/fd")))
@@ -319,8 +327,9 @@ class Campaign:
                         world.kill(victim)
                         done, victims[victim] = done + 1, victims[victim] + 1
                 if replay.poll() is None:
+                    said = world.says()
                     replay.kill()
-                    raise Failed(f"after {done} kills the replay did not end in {PATIENCE_S:.0f} s")
+                    raise Failed(f"after {done} kills the replay did not end in {PATIENCE_S:.0f} s; {said}")
                 if difference := settle(world, self.undisturbed):
                     raise Failed(f"after {done} kills: {difference}")
                 world.stop()
@@ -562,8 +571,9 @@ class Campaign:
                     wire.cut(1.0)
                     cuts += 1
                 if replay.poll() is None:
+                    said = world.says()
                     replay.kill()
-                    raise Failed(f"after {cuts} cuts the replay did not end in {PATIENCE_S:.0f} s")
+                    raise Failed(f"after {cuts} cuts the replay did not end in {PATIENCE_S:.0f} s; {said}")
                 difference = settle(world, self.undisturbed)
                 if ended := world.keep_up():
                     raise Failed(f"after {cuts} cuts ended: {ended}")

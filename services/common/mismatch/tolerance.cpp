@@ -6,6 +6,7 @@
 
 #include "sealwatch/model/physics.hpp"
 #include "services/common/dense/dense.hpp"
+#include "services/common/mismatch/candidates.hpp"
 #include "services/common/mismatch/linear_algebra.hpp"
 #include "services/common/mismatch/normal_equations.hpp"
 

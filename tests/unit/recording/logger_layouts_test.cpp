@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdio>
 
+#include "services/common/recording/cells.hpp"
 #include "services/common/recording/recording_file.hpp"
 #include "tests/unit/recording/plant.hpp"
 

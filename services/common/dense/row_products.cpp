@@ -62,6 +62,8 @@ Product fastest_product() {
   return product_by_two;
 }
 
+const Product product_of_panels = fastest_product();
+
 constexpr Eigen::Index kAtOnce = 128;  // rows: their panels stay in the nearest cache
 
 void fill(RowBlock& block, const Rows& x, Eigen::Index begin) {
@@ -107,11 +109,10 @@ void RowBlock::add(const double* row, double last) {
 const double* RowBlock::panel(Eigen::Index which) const { return panels_of_rows_.data() + which * most_ * kPanel; }
 
 void RowBlock::add_gram_to(Eigen::MatrixXd& gram) const {
-  static const Product product = fastest_product();
   double sums[kPanel * kPanel];
   for (Eigen::Index p = 0; p < panels_; ++p)
     for (Eigen::Index q = 0; q <= p; ++q) {
-      product(panel(p), panel(q), rows_, sums);
+      product_of_panels(panel(p), panel(q), rows_, sums);
       for (Eigen::Index i = p * kPanel; i < std::min((p + 1) * kPanel, columns_); ++i)
         for (Eigen::Index j = q * kPanel; j < std::min((q + 1) * kPanel, i + 1); ++j) {
           const double sum = sums[(i - p * kPanel) * kPanel + j - q * kPanel];
@@ -122,7 +123,6 @@ void RowBlock::add_gram_to(Eigen::MatrixXd& gram) const {
 }
 
 void RowBlock::add_product_to(const RowBlock& other, Eigen::MatrixXd& product) const {
-  static const Product product_of_panels = fastest_product();
   double sums[kPanel * kPanel];
   for (Eigen::Index p = 0; p < panels_; ++p)
     for (Eigen::Index q = 0; q < other.panels_; ++q) {

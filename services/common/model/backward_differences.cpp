@@ -103,7 +103,7 @@ BackwardDifferences::BackwardDifferences(int states, int parameters, std::vector
 
 // kappa, gamma, alpha = (1 - kappa) gamma and error constants kappa gamma + 1/(k+1) of Shampine and Reichelt, table 1.
 const BackwardDifferences::Coefficients& BackwardDifferences::coefficients() {
-  static const Coefficients table = [] {
+  static constexpr Coefficients table = [] {
     constexpr std::array kappa = {0.0, -0.1850, -1.0 / 9.0, -0.0823, -0.0415, 0.0};
     Coefficients c;
     for (int k = 0; k <= kMaximumOrder; ++k) {

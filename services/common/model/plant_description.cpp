@@ -1,7 +1,9 @@
 #include "sealwatch/model/plant_description.hpp"
 
 #include <algorithm>
+#include <mutex>
 
+#include "sealwatch/core/process_copy.hpp"
 #include "sealwatch/core/text.hpp"
 #include "services/common/model/plant_tables.hpp"
 #include "services/common/model/simulation_plants.hpp"
@@ -53,6 +55,8 @@ const PlantDescription& plant_or_default(std::string_view name) {
 }
 
 std::deque<PlantDescription>& known_plants() {
+  static FreeInCopies mutex;
+  const std::scoped_lock lock(mutex);  // a copy would wait for who makes them
   static std::deque<PlantDescription> plants = [] {
     std::deque<PlantDescription> native;
     for (const NativePlant& plant : native_plants()) native.push_back(plant.description);

@@ -83,21 +83,21 @@ class RecordedPlantSystem final : public PlantSystem<Model, WithPhysics> {
       } else {
         const std::size_t parameter = load ? System::kPlantParameters : quantity.index;
         seed(block.values.plant, parameter, k);
-        block.seen_by_outputs = block.seen_by_outputs || seen_parameters()[parameter];
+        block.seen_by_outputs = block.seen_by_outputs || kSeen[parameter];
       }
     }
     return block;
   }
 
-  /// Which parameters, the load factor behind them, some output depends on: one that is not a number leaves none.
-  static const std::array<bool, System::kPlantParameters + 1>& seen_parameters() {
-    static const auto seen = [] {
-      std::array<bool, System::kPlantParameters + 1> result{};
-      for (std::size_t which = 0; which < result.size(); ++which) result[which] = some_output_sees(which);
-      return result;
-    }();
+  /// Which parameters, the load factor behind them, some output depends on: one that is not a number leaves none. Made
+  /// before main: a copy of the process (core/process_copy.hpp) would wait for the thread that was making it.
+  using Seen = std::array<bool, System::kPlantParameters + 1>;
+  static Seen seen_parameters() {
+    Seen seen{};
+    for (std::size_t which = 0; which < seen.size(); ++which) seen[which] = some_output_sees(which);
     return seen;
   }
+  static inline const Seen kSeen = seen_parameters();
   static bool some_output_sees(std::size_t parameter) {
     typename System::Parameters parameters;
     std::size_t index = 0;

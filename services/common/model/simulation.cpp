@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <mutex>
 
+#include "sealwatch/core/process_copy.hpp"
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/model/driving_channels.hpp"
 #include "sealwatch/model/law_sizes.hpp"
@@ -26,6 +28,8 @@ Status check_recording(const PlantDescription& plant, const TimeSeries& recorded
 }
 
 std::deque<PlantSimulator>& plant_simulators() {
+  static FreeInCopies mutex;
+  const std::scoped_lock lock(mutex);  // a copy would wait for who makes them
   static std::deque<PlantSimulator> simulators = [] {
     std::deque<PlantSimulator> native;
     for (const NativePlant& plant : native_plants()) native.push_back(plant.simulator);

@@ -102,7 +102,7 @@ Status AssetLanes::begin_next(const std::string& asset_id, Lane& lane) {
 
 void AssetLanes::try_first(const std::string& asset_id, Lane& lane) {
   const auto work = [layer = lane.layer, input = lane.receiving->message] { (void)completed(layer->receive(*input)); };
-  lane.trial = Trial::begin(work, options_.workers.deadline, options_.workers.by_clock);
+  lane.trial = Trial::begin(work, {.deadline = options_.workers.deadline, .by_clock = options_.workers.by_clock});
   if (lane.trial)
     trials_.insert(asset_id);
   else

@@ -2,7 +2,8 @@
 // thrown away, only how it ended counts. The copy has this thread alone and no open file, and ends with its maker. What
 // other threads had locked stays locked in it: memory and streams the C library sees to, the log is silent, FMUs get
 // processes of their own, and what layers share is locked by a FreeInCopies (core/process_copy.hpp). So a layer may do
-// there whatever it does here.
+// there whatever it does here. What a library locks or makes at its first use nobody can know: a copy that sleeps and
+// uses no processor waits for a thread that it does not have, and another copy is made in its place.
 #pragma once
 
 #include <sys/types.h>
@@ -17,11 +18,13 @@ namespace sealwatch {
 
 class Trial {
  public:
-  /// `deadline`: of a processor's time, or `by_clock`, as for other work (workers.hpp). None where no process can be
-  /// made.
-  [[nodiscard]] static std::unique_ptr<Trial> begin(const std::function<void()>& work,
-                                                    std::chrono::milliseconds deadline,
-                                                    std::chrono::milliseconds by_clock);
+  struct Limits {
+    std::chrono::milliseconds deadline;                         ///< of a processor's time,
+    std::chrono::milliseconds by_clock;                         ///< or so long, as for other work (workers.hpp)
+    std::chrono::milliseconds still = std::chrono::seconds(5);  ///< after which a copy that sleeps is replaced
+  };
+  /// None where no process can be made.
+  [[nodiscard]] static std::unique_ptr<Trial> begin(std::function<void()> work, const Limits& limits);
   ~Trial();
   Trial(const Trial&) = delete;
   Trial& operator=(const Trial&) = delete;
@@ -29,15 +32,25 @@ class Trial {
   [[nodiscard]] std::optional<std::string> result();
 
  private:
-  Trial(pid_t process, int words, std::chrono::milliseconds deadline, std::chrono::milliseconds by_clock);
+  /// A process, and the end of a pipe from which its last words are read.
+  struct Copy {
+    pid_t process = -1;
+    int words = -1;
+  };
+  Trial(std::function<void()> work, const Limits& limits, Copy copy);
+  [[nodiscard]] static std::optional<Copy> copy_for(const std::function<void()>& work);
+  void end_copy();
   [[nodiscard]] std::string told() const;
   [[nodiscard]] bool is_overdue() const;
+  [[nodiscard]] bool stands_still();
+  [[nodiscard]] std::optional<std::string> with_another_copy();
 
-  pid_t process_;
-  int words_;  ///< what it says before it ends
-  std::chrono::steady_clock::time_point begun_;
-  std::chrono::milliseconds deadline_;
-  std::chrono::milliseconds by_clock_;
+  std::function<void()> work_;
+  Limits limits_;
+  Copy copy_;
+  int copies_ = 1;
+  std::chrono::steady_clock::time_point begun_, moved_;  ///< the copy; its processor time, as far as was looked
+  std::chrono::nanoseconds used_{0};
 };
 
 }  // namespace sealwatch

@@ -3,10 +3,14 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
+#include <mutex>
+#include <new>
 #include <thread>
 
 #include "sealwatch/model/physics.hpp"
@@ -18,9 +22,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Of processor time alone: on a busy machine everything takes long by the clock.
-std::string result_of(const std::function<void()>& work, milliseconds deadline = milliseconds(10'000)) {
-  const auto trial = Trial::begin(work, deadline, milliseconds(60'000));
+/// Of processor time alone: on a busy machine everything takes long by the clock. A copy that stands still does so.
+std::string result_of(const std::function<void()>& work, milliseconds deadline = milliseconds(10'000),
+                      milliseconds still = std::chrono::hours(1)) {
+  const auto trial = Trial::begin(work, {.deadline = deadline, .by_clock = milliseconds(60'000), .still = still});
   for (;;) {
     if (const auto result = trial->result()) return *result;
     std::this_thread::sleep_for(milliseconds(1));
@@ -103,6 +108,65 @@ TEST(TrialTest, WhatWaitsForAProcessorIsNotOverdueButWhatComputesIs) {
     for (volatile bool for_ever = true; for_ever;) continue;
   };
   EXPECT_EQ(result_of(computes, milliseconds(1000)), "it did not end within 1 s");
+}
+
+/// A number that copies of the process share.
+class Shared {
+ public:
+  Shared()
+      : number_(new (::mmap(nullptr, sizeof(std::atomic<int>), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1,
+                            0)) std::atomic<int>(0)) {}
+  ~Shared() { ::munmap(number_, sizeof(std::atomic<int>)); }
+  Shared(const Shared&) = delete;
+  Shared& operator=(const Shared&) = delete;
+  std::atomic<int>& operator*() const { return *number_; }
+
+ private:
+  std::atomic<int>* number_;
+};
+
+TEST(TrialTest, ACopyThatWaitsForAThreadItDoesNotHaveIsReplaced) {
+  std::mutex of_a_library;
+  const Shared copies;
+  std::atomic<bool> is_locked = false;
+  std::thread other([&] {
+    const std::lock_guard lock(of_a_library);
+    is_locked = true;
+    while (*copies == 0) std::this_thread::sleep_for(milliseconds(1));
+  });
+  while (!is_locked) std::this_thread::sleep_for(milliseconds(1));
+  const auto waits = [&] {
+    ++*copies;
+    const std::lock_guard lock(of_a_library);
+  };
+  EXPECT_EQ(result_of(waits, milliseconds(10'000), milliseconds(300)), "");
+  EXPECT_EQ(*copies, 2);
+  other.join();
+}
+
+TEST(TrialTest, WhatStandsStillInEveryCopyIsSaidTo) {
+  const Shared copies;
+  const auto waits = [&] {
+    ++*copies;
+    ::pause();
+  };
+  EXPECT_EQ(result_of(waits, milliseconds(10'000), milliseconds(200)), "it stood still, each time it was tried");
+  EXPECT_EQ(*copies, 3);
+}
+
+TEST(TrialTest, ACopyThatWaitsForAProcessOfItsOwnDoesNotStandStill) {
+  const Shared copies;
+  const auto waits = [&] {
+    ++*copies;
+    const pid_t child = ::fork();
+    if (child == 0) {
+      ::usleep(900'000);
+      ::_exit(0);
+    }
+    ::waitpid(child, nullptr, 0);
+  };
+  EXPECT_EQ(result_of(waits, milliseconds(10'000), milliseconds(200)), "");
+  EXPECT_EQ(*copies, 1);
 }
 
 TEST(TrialTest, AFailureIsNotHiddenByTheSilentLog) {

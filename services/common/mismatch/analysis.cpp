@@ -46,6 +46,7 @@ Result<Explanation> Analysis::analyse() {
   time_.allow(kSettledBy);
   if (!asked && time_.in_time(kFixedValues)) ask_the_datasheet();
   time_.allow(1.0);
+  if (!why_none_) take_no_measurement_for_a_value();
   if (why_none_) take_no_law();
   if (!best_.effects.empty()) {
     tell("proving on held-out recordings", 0.75);

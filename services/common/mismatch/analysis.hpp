@@ -111,6 +111,10 @@ class Analysis {
   // gross misfit without a law a value takes up some of whatever is missing.)
   void ask_the_datasheet();
   void ask_the_datasheet_alone();
+  [[nodiscard]] bool only_measurements_are_off() const;
+  // What explains as much as a sensor that is off may be a value that is off: a search that had no time to ask claims
+  // neither.
+  void take_no_measurement_for_a_value();
   // Values that took the place of laws while these were searched are off, where the held-out recordings bear them out and
   // laws are beside them. Else the laws again: what values do alone is asked in the end, all that do it alike.
   void take_values_found();

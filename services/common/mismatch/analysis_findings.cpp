@@ -335,8 +335,9 @@ const ChannelComparison* Analysis::missed_in(const PooledFit& fit) {
 }
 
 std::string Analysis::what_happened() const {
-  return is_wear(*own_) ? "The " + worn_part(asset_) + " aged between these tests. "
-                        : "Something changed between these tests. ";
+  if (is_wear(*own_)) return "The " + worn_part(asset_) + " aged between these tests. ";
+  if (leaves_nothing()) return "Something changed between these tests. ";
+  return "Something changed between these tests, or some of them show more of what is missing. ";
 }
 
 void Analysis::say_what_else_is_known() {

@@ -48,14 +48,16 @@ void Analysis::ask_the_datasheet() {
     return;
   }
   asked_values_.push_back(asked(*wrong, naming_));
+  // A sensor or a recording is no likelier off than a value: where one does as well as the other, nobody can tell.
+  const double instead_by = only_measurements_are_off() ? -kCannotTell : kCannotTell;
   // Laws that stand in both explanations are claimed with the better one.
-  const double better_by = laws == 0 ? kWorthAnother : wrong->with.effects.empty() ? kCannotTell : 0.0;
+  const double better_by = laws == 0 ? kWorthAnother : wrong->with.effects.empty() ? instead_by : 0.0;
   if (wrong->behind < -better_by) {
     std::vector<RecordingComparison> compared;
     time_.allow(1.0);  // a proof, whatever is searched further
     const bool borne_out = bears_out(*wrong, *best_.model, compared),
                beside = borne_out && take_beside_values(*wrong, instead_of, compared);
-    if (borne_out && !beside && wrong->behind < -kCannotTell &&
+    if (borne_out && !beside && (wrong->with.effects.empty() || wrong->behind < -kCannotTell) &&
         (wrong->with.effects.empty() || !is_in_place_of_what_is_missing(*best_.model, *wrong->with.model)))
       blame_the_asset_file(*wrong, joined(instead_of, " and "), compared);
     time_.allow(kSearchShare);
@@ -63,6 +65,19 @@ void Analysis::ask_the_datasheet() {
   if (why_none_ || beside_ || laws == 0) return;
   result_.asset_values = wrong->values;
   instead_of_ = laws;
+}
+
+bool Analysis::only_measurements_are_off() const {
+  return !best_.effects.empty() &&
+         std::ranges::all_of(best_.effects, [](const Effect& effect) { return is_of_measurement(effect.law->kind); });
+}
+
+void Analysis::take_no_measurement_for_a_value() {
+  const bool was_cut = std::ranges::find(time_.not_asked(), kFixedValues) != time_.not_asked().end();
+  if (!was_cut || !only_measurements_are_off() || known_values(asset_, plant()).empty()) return;
+  std::vector<std::string> laws;
+  for (const Effect& effect : best_.effects) laws.push_back(law_in_words(law_at(effect)));
+  why_none_ = values_not_asked(joined(laws, " and "), options_.time_limit_s);
 }
 
 // Laws that held-out recordings do not bear out leave what they explained to a value.

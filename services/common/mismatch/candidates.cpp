@@ -11,21 +11,32 @@ constexpr std::size_t kLargestGrid = 12;
 constexpr Eigen::Index kClipped = 5;  // samples in a row at the largest value of a recording: a sensor at its end
 constexpr double kBiasShare = 0.01;   // usual bias of a sensor, of the range of its channel in the recording
 
-// All combinations of the start values, in the sizes of the plant; for many, the first values of each parameter with
-// the usual ones of the others.
+// In the sizes of the plant; a place also on the other side of zero, where the plant may have it.
+std::vector<double> starts_of(const LawParameter& parameter, const PlantDescription& plant) {
+  std::vector<double> starts;
+  for (std::size_t k = 0; k < (parameter.strength ? 1 : parameter.start.size()); ++k) {
+    starts.push_back(law_start(plant, parameter, k));
+    if (parameter.place && law_bounds(plant, parameter).min < 0.0) starts.push_back(-starts.back());
+  }
+  return starts;
+}
+
+// All combinations of the start values; for many, the first values of each parameter with the usual ones of the others.
 std::vector<std::vector<double>> shape_grid(const Law& law, const PlantDescription& plant) {
   std::vector<std::vector<double>> grid(1);
+  std::size_t largest = kLargestGrid;
   for (const LawParameter& parameter : law.parameters) {
-    const std::size_t choices = parameter.strength ? 1 : parameter.start.size();
+    const std::vector<double> starts = starts_of(parameter, plant);
+    if (!parameter.strength && starts.size() > parameter.start.size()) largest = 2 * kLargestGrid;
     std::vector<std::vector<double>> next;
-    for (std::size_t k = 0; k < choices && next.size() < kLargestGrid; ++k)
+    for (std::size_t k = 0; k < starts.size() && next.size() < largest; ++k)
       for (const std::vector<double>& point : grid) {
         next.push_back(point);
-        next.back().push_back(law_start(plant, parameter, k));
+        next.back().push_back(starts[k]);
       }
     grid = std::move(next);
   }
-  if (grid.size() > kLargestGrid) grid.resize(kLargestGrid);
+  if (grid.size() > largest) grid.resize(largest);
   return grid;
 }
 

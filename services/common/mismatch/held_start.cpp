@@ -154,8 +154,8 @@ class HeldSearch {
     const std::optional<Trial> nothing = held_without_laws();
     if (!nothing) return {};
     Trial found = laws_beside(*nothing, Laws::listed);
-    // Where listed laws leave much, a curve without a mechanism may show it all, and listed ones only parts of it.
-    if (excess(*found.model) > kGross) {
+    // Where listed laws leave anything, a curve without a mechanism may show it all, and listed ones only parts of it.
+    if (excess(*found.model) > kNoise) {
       allow_its_share();
       Trial forms = laws_beside(*nothing, Laws::all);
       if (share_explained(misfit_of(*found.model), misfit_of(*forms.model)) >= kExplainedAtLeast)

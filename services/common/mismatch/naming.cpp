@@ -666,7 +666,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
   }
   if (!naming.differs_in.empty()) return naming;
   settle(naming, data, options);
-  if (naming.last.p_value <= options.false_alarm_rate && in_time("closed forms that no law of the list has"))
+  if (!is_at_the_noise(naming, options) && in_time("closed forms that no law of the list has"))
     try_closed_forms(naming, data, options);
   one_shape_for_several(naming, data, options);
   return naming;

@@ -118,13 +118,6 @@ std::vector<std::vector<LawStart>> most_promising(std::vector<std::vector<LawSta
   return starts;
 }
 
-// What a search that stopped early left lies in its own parameters, where no law's score sees it: the misfit does.
-bool is_at_the_noise(const Naming& naming, const ExplainOptions& options) {
-  constexpr double kLeft = 1.1;
-  const FittedModel& model = *naming.best.model;
-  return model.misfit < kLeft * model.residuals && !differs(naming.last.p_value, model, options.false_alarm_rate);
-}
-
 // Starts of refits with another law in the place of one, elsewhere. Near the noise the linear model of the whole tells
 // which may do as well; further off those are asked that promise most beside the other laws.
 struct InPlace {
@@ -195,6 +188,12 @@ Trial* known_without(Naming& naming, const FittedModel& whole, const std::vector
 }
 
 }  // namespace
+
+bool is_at_the_noise(const Naming& naming, const ExplainOptions& options) {
+  constexpr double kLeft = 1.1;
+  const FittedModel& model = *naming.best.model;
+  return model.misfit < kLeft * model.residuals && !differs(naming.last.p_value, model, options.false_alarm_rate);
+}
 
 std::optional<Trial> without_law(Naming& naming, const Trial& trial, std::size_t slot, const Data& data, int threads) {
   Trial fewer{.effects = trial.effects, .model = nullptr};

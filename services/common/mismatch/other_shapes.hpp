@@ -28,6 +28,10 @@ void compete_again(Naming& naming, const Data& data, const ExplainOptions& optio
 /// each law of the element is asked for what they do together, and stays where several are not worth another law.
 void one_law_for_several(Naming& naming, const Data& data, const ExplainOptions& options);
 
+/// Whether the best leaves nothing: neither a law's score tells more, nor the misfit. What a search that stopped early
+/// left lies in its own parameters, and what a closed form would do may lie beyond all listed laws: no score sees that.
+[[nodiscard]] bool is_at_the_noise(const Naming& naming, const ExplainOptions& options);
+
 /// A trial without one of its laws: as it was fitted already, from that trial or to convergence, else fitted from the
 /// trial, and kept. None where that cannot be simulated or time is up.
 [[nodiscard]] std::optional<Trial> without_law(Naming& naming, const Trial& trial, std::size_t slot, const Data& data,

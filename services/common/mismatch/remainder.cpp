@@ -40,17 +40,30 @@ struct Told {
   const LawParameter* strength = nullptr;
 };
 
-Told told_best(const FittedModel& model, const Effect& effect, const std::vector<double>& errors,
-               const Resolution* resolution) {
+/// A law's unknowns among a model's shared ones: of its strengths, or of its shapes.
+std::vector<std::size_t> unknowns_of(const FittedModel& model, const Effect& effect, bool strengths) {
+  std::vector<std::size_t> places;
+  for (const LawParameter& parameter : effect.law->parameters) {
+    const std::string name = physics_parameter_name(effect.element, effect.law->id, parameter.name);
+    const auto unknown = std::ranges::find(model.problem.shared, name, &Unknown::name);
+    if (parameter.strength == strengths && unknown != model.problem.shared.end())
+      places.push_back(static_cast<std::size_t>(unknown - model.problem.shared.begin()));
+  }
+  return places;
+}
+
+Told told_best(const FittedModel& model, const Effect& effect, const Resolution* resolution) {
+  const std::vector<std::size_t> strengths = unknowns_of(model, effect, true);
+  const std::vector<double> errors = standard_errors_beside(model, strengths, unknowns_of(model, effect, false));
   Told best;
   for (const std::size_t s : strengths_of(*effect.law)) {
     const LawParameter& strength = effect.law->parameters[s];
     const std::string name = physics_parameter_name(effect.element, effect.law->id, strength.name);
-    const auto unknown = std::ranges::find(model.problem.shared, name, &Unknown::name);
-    const auto k = static_cast<std::size_t>(unknown - model.problem.shared.begin());
-    if (unknown == model.problem.shared.end() || !std::isfinite(errors[k]) || errors[k] <= 0.0)
+    const auto is_it = [&](std::size_t k) { return model.problem.shared[k].name == name; };
+    const auto known = static_cast<std::size_t>(std::ranges::find_if(strengths, is_it) - strengths.begin());
+    if (known == strengths.size() || !std::isfinite(errors[known]) || errors[known] <= 0.0)
       return {std::numeric_limits<double>::infinity(), &strength};
-    const double error = resolution == nullptr ? errors[k] : std::hypot(errors[k], resolution->of(strength));
+    const double error = resolution == nullptr ? errors[known] : std::hypot(errors[known], resolution->of(strength));
     const double by = std::abs(*estimate_of(model, name)) / error;
     if (best.strength == nullptr || by > best.errors) best = {by, &strength};
   }
@@ -89,17 +102,16 @@ bool takes_up_little(const FittedModel& without, const FittedModel& with, double
 std::optional<NotTold> not_told_from_zero(const Trial& trial, const Resolution& resolution) {
   constexpr double kTold = 2.0;  // standard errors: 95 % of them lie closer to the true value
   const FittedModel& model = *trial.model;
-  const std::vector<double> errors = standard_errors(model);
   std::optional<NotTold> least;
   double told = kTold;
   for (std::size_t slot = 0; slot < trial.effects.size(); ++slot) {
     const Effect& effect = trial.effects[slot];
-    const Told by = told_best(model, effect, errors, &resolution);
+    const Told by = told_best(model, effect, &resolution);
     if (by.errors >= told) continue;
     told = by.errors;
     least = NotTold{slot, "A law that fits better (" + law_in_words(law_at(effect)) + ") has a strength of only " +
                               number(by.errors, 2) + " standard errors, which may be nothing: it is not claimed."};
-    if (const Told alone = told_best(model, effect, errors, nullptr); alone.errors >= kTold)
+    if (const Told alone = told_best(model, effect, nullptr); alone.errors >= kTold)
       least->by_size = size_in_words(model, effect, *alone.strength, *resolution.plant);
   }
   return least;

@@ -10,8 +10,8 @@ constexpr SignalWords kShaftSpeed{"shaft speed", "rad/s", "omega"};
 constexpr SignalWords kPumpPressure{"pump pressure difference", "Pa", "p_1 - p_2"};
 constexpr SignalWords kValveFlow{"flow into the chamber", "m3/s", "q"};
 constexpr SignalWords kValveDrop{"pressure drop over the valve", "Pa", "D"};
-constexpr SignalWords kVelocity{"piston velocity", "m/s", "v"};
-constexpr SignalWords kPosition{"piston position", "m", "x"};
+constexpr SignalWords kVelocity{"velocity", "m/s", "v"};
+constexpr SignalWords kPosition{"position", "m", "x"};
 constexpr SignalWords kNone{"", "", ""};
 
 constexpr SiteWords kDriver{

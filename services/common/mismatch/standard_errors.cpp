@@ -95,6 +95,20 @@ class Covariance {
     if (!at) return std::numeric_limits<double>::infinity();
     return std::sqrt(std::max(inverse_(*at, *at), by_scores_(*at, *at))) * scale_(*at);
   }
+  /// Of one that `others` are given beside; those that the data do not tell of are given anyhow.
+  [[nodiscard]] double standard_error_beside(std::size_t k, std::span<const std::size_t> others) const {
+    const auto at = place(k);
+    if (!at) return std::numeric_limits<double>::infinity();
+    std::vector<Eigen::Index> given;
+    for (const std::size_t other : others)
+      if (const auto there = place(other)) given.push_back(*there);
+    const auto variance = [&](const Eigen::MatrixXd& of) {
+      if (given.empty()) return of(*at, *at);
+      const Eigen::VectorXd with_given = of(given, *at);
+      return of(*at, *at) - with_given.dot(submatrix(of, given).ldlt().solve(with_given));
+    };
+    return std::sqrt(std::max({variance(inverse_), variance(by_scores_), 0.0})) * scale_(*at);
+  }
   [[nodiscard]] double of_difference(std::size_t k, std::size_t other) const {
     const auto a = place(k), b = place(other);
     if (!a || !b) return std::numeric_limits<double>::infinity();
@@ -118,14 +132,30 @@ class Covariance {
 
 }  // namespace
 
+namespace {
+
+// In the unknown's own unit.
+double in_its_unit(const FittedModel& model, std::size_t k, double error) {
+  if (!std::isfinite(error)) return error;
+  return error * std::abs(model.problem.shared[k].slope(model.optimum.point.shared[k]));
+}
+
+}  // namespace
+
 std::vector<double> standard_errors(const FittedModel& model) {
   const Covariance covariance(model);
   std::vector<double> errors;
-  for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {
-    const double slope = std::abs(model.problem.shared[k].slope(model.optimum.point.shared[k]));
-    const double error = covariance.standard_error(k);
-    errors.push_back(std::isfinite(error) ? error * slope : error);
-  }
+  for (std::size_t k = 0; k < model.problem.shared.size(); ++k)
+    errors.push_back(in_its_unit(model, k, covariance.standard_error(k)));
+  return errors;
+}
+
+std::vector<double> standard_errors_beside(const FittedModel& model, std::span<const std::size_t> unknowns,
+                                           std::span<const std::size_t> given) {
+  const Covariance covariance(model);
+  std::vector<double> errors;
+  for (const std::size_t k : unknowns)
+    errors.push_back(in_its_unit(model, k, covariance.standard_error_beside(k, given)));
   return errors;
 }
 

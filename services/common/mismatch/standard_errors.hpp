@@ -23,6 +23,12 @@ namespace sealwatch::mismatch {
 /// Of each shared unknown in its own unit; infinite where the data cannot tell or where the unknown is at its bound.
 [[nodiscard]] std::vector<double> standard_errors(const FittedModel& model);
 
+/// Of these shared unknowns where the `given` ones are known. A law's strength beside its own shape: whether the law is
+/// there, when strength and shape can only be told together (k i |i| / (i_f + |i|), i_f beyond all currents).
+[[nodiscard]] std::vector<double> standard_errors_beside(const FittedModel& model,
+                                                         std::span<const std::size_t> unknowns,
+                                                         std::span<const std::size_t> given);
+
 /// Between the two of these shared unknowns that lie furthest apart, in standard errors of their difference: what is known
 /// of neither, as both share it (a sensor's gain), says nothing against that. Values of one parameter in several
 /// recordings; 0 where the data cannot tell one of them.

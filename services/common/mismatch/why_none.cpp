@@ -93,6 +93,12 @@ WhyNone value_of_the_asset_file(const std::string& values, bool several, const s
           "the asset file) and analyse again: the estimate would hide a fault with the same effect."};
 }
 
+WhyNone values_not_asked(const std::string& laws, double limit_s) {
+  return {.summary = "These recordings would be explained by " + laws +
+                     ", or by a value that the asset file fixes, which there was no time to ask. Neither is claimed.",
+          .next_test = more_time_than(limit_s) + "."};
+}
+
 WhyNone nowhere_near(const ChannelComparison& far, const Data& fit, const PooledFit& before) {
   std::string check =
       "Check the units, signs and wiring of the recorded channels, then the parameters in the asset file.";

@@ -42,6 +42,9 @@ struct WhyNone {
 [[nodiscard]] WhyNone value_of_the_asset_file(const std::string& values, bool several, const std::string& beside,
                                               const std::string& instead_of, const PooledFit& holdout);
 
+/// Time was up before values of the asset file were asked in place of `laws`, in words, all of sensors or the recording.
+[[nodiscard]] WhyNone values_not_asked(const std::string& laws, double limit_s);
+
 /// `far`: the channel that is missed most with the laws, `before`: without. Tests of different days may also differ
 /// from one another.
 [[nodiscard]] WhyNone nowhere_near(const ChannelComparison& far, const Data& fit, const PooledFit& before);

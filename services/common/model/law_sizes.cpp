@@ -14,6 +14,8 @@ double size_of(const PlantDescription& plant, std::string_view unit) {
   return size == plant.law_sizes.end() ? 1.0 : size->factor;
 }
 
+bool is_of_a_file(const PlantDescription& plant) { return !plant.file.empty(); }
+
 }  // namespace
 
 double law_size(const PlantDescription& plant, const LawParameter& parameter) {
@@ -24,9 +26,10 @@ LawBounds law_bounds(const PlantDescription& plant, const LawParameter& paramete
   // Whoever describes a plant gives sizes by order of magnitude: a strength that ends at a bound made of them would leave
   // the rest of what it does to laws that are not there.
   constexpr double kRoom = 100.0;
-  const bool guessed = parameter.strength && !parameter.own_size && !plant.file.empty();
+  const bool guessed = parameter.strength && !parameter.own_size && is_of_a_file(plant);
   const double size = law_size(plant, parameter) * (guessed ? kRoom : 1.0);
-  return {size * parameter.min, size * parameter.max};
+  const double least = parameter.place && is_of_a_file(plant) ? -parameter.max : parameter.min;
+  return {size * least, size * parameter.max};
 }
 
 double law_start(const PlantDescription& plant, const LawParameter& parameter, std::size_t which) {

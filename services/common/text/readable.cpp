@@ -45,8 +45,11 @@ std::string superscript(int exponent) {
   return text;
 }
 
+// What is rounded to nothing has no sign.
 std::string with_minus(const std::string& digits) {
-  return digits.starts_with("-") ? std::string("−").append(digits, 1) : digits;
+  if (!digits.starts_with("-")) return digits;
+  const bool is_nothing = digits.find_first_of("123456789") == std::string::npos;
+  return (is_nothing ? std::string() : std::string("−")).append(digits, 1);
 }
 
 std::string power_of_ten(int exponent) { return std::string("10").append(superscript(exponent)); }
@@ -117,11 +120,14 @@ std::string readable(double value, std::string_view si_unit, int digits) {
 
 std::string readable_with_error(double value, double error, std::string_view si_unit) {
   if (!(error > 0.0) || !std::isfinite(error) || !std::isfinite(value)) return readable(value, si_unit, 4);
-  const DisplayUnit unit = si_unit.empty() ? DisplayUnit{} : display_unit(si_unit, value);
+  const DisplayUnit unit = si_unit.empty() ? DisplayUnit{} : display_unit(si_unit, std::max(std::abs(value), error));
   const double shown_error = error * unit.factor;
   if (!std::isfinite(shown_error) || !(shown_error > 0.0)) return readable(value, si_unit, 4);
-  const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(shown_error))), 0, 6);
-  std::string text = with_minus(format("{:.{}f} ± {:.{}f}", value * unit.factor, decimals, shown_error, decimals));
+  constexpr int kMostDecimals = 6;
+  const int needed = 1 - static_cast<int>(std::floor(std::log10(shown_error))),
+            decimals = std::clamp(needed, 0, kMostDecimals);
+  std::string text = with_minus(format("{:.{}f}", value * unit.factor, decimals)).append(" ± ");
+  text += needed > kMostDecimals ? number_text(shown_error, 2) : format("{:.{}f}", shown_error, decimals);
   if (unit.text.starts_with("10")) return std::string("(").append(text).append(")·").append(unit.text);
   return unit.text.empty() ? text : text.append(" ").append(unit.text);
 }

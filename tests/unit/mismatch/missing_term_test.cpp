@@ -108,7 +108,7 @@ TEST(MissingTerm, OfCoulombFrictionIsItsForceOverTime) {
   EXPECT_LT(law.relative_rms, 0.1);
   EXPECT_EQ(term->quantity, "force against +x, up to a constant");  // the load is each recording's own
   EXPECT_EQ(term->unit, "N");
-  EXPECT_EQ(term->state, "piston velocity");
+  EXPECT_EQ(term->state, "velocity");
   EXPECT_NEAR(*std::ranges::max_element(term->state_value), 1.33e-3, 1e-4);
   EXPECT_THAT(regime_of(term_paths(coulomb.with, "piston", *coulomb.law, coulomb.parameters), SiteKind::piston_force),
               StartsWith("moving, both directions, "));
@@ -162,7 +162,7 @@ TEST(MissingTerm, OfAScoredBoreIsItsLeakageOverTime) {
   EXPECT_EQ(term->quantity, "flow from chamber A to B");
   EXPECT_EQ(term->state, "pressure difference across the piston");
   EXPECT_THAT(regime_of(term_paths(score.with, "piston_seal", *score.law, score.parameters), SiteKind::seal_leakage),
-              HasSubstr("; piston position between "));
+              HasSubstr("; position between "));
   RecordProperty("within", std::to_string(demanded.within));
   RecordProperty("relative_rms", std::to_string(demanded.relative_rms));
 }
@@ -266,9 +266,9 @@ TEST(Regime, IsNamedByWhereTheEnergyIs) {
   EXPECT_THAT(regime([](double, double v, double) { return v < 0.0 ? 100.0 : 0.0; }), HasSubstr("moving towards -x"));
   EXPECT_THAT(regime([](double, double v, double) { return v == 0.0 ? 100.0 : 0.0; }), HasSubstr("at rest"));
   EXPECT_EQ(regime([](double, double v, double x) { return x > 0.057 ? 1e5 * v : 0.0; }),
-            "moving, both directions; piston position above 57 mm, 20 % of the time");
+            "moving, both directions; position above 57 mm, 20 % of the time");
   EXPECT_EQ(regime([](double, double v, double x) { return v != 0.0 && std::abs(x - 0.055) > 0.003 ? 100.0 : 0.0; }),
-            "moving, both directions; piston position below 51.6 mm or above 58 mm, 27 % of the time");
+            "moving, both directions; position below 51.6 mm or above 58 mm, 27 % of the time");
   EXPECT_EQ(regime_of({}, SiteKind::piston_force), "");
 }
 

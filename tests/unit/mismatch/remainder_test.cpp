@@ -6,6 +6,7 @@
 
 #include "sealwatch/model/physics.hpp"
 #include "services/common/mismatch/explain_input.hpp"
+#include "services/common/mismatch/standard_errors.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "tests/unit/mismatch/simulated_test.hpp"
 
@@ -106,6 +107,22 @@ TEST(Remainder, ALawWhoseStrengthMayBeNothingIsNotClaimed) {
   ASSERT_TRUE(nothing);
   EXPECT_EQ(nothing->slot, 0U);
   EXPECT_THAT(nothing->sentence, testing::HasSubstr("external leakage at chamber A"));
+}
+
+// k_f i |i| / (i_f + |i|) is k_f / i_f i |i| where i_f lies beyond all currents: neither can be told, their ratio can.
+TEST(Remainder, ALawIsThereWhoseStrengthIsToldWithItsShapeOnly) {
+  const AssetConfig asset = load_asset(SEALWATCH_SOURCE_DIR "/config/assets/xt03-mv2.yaml").value();
+  const Law& law = **find_law("torque_saturation", {"k_f", "i_f"});
+  const std::vector parameters{0.005, 100.0};
+  const std::vector<Recording> tests{recording_of(with_law(asset, law, "shaft", parameters), 1.0)};
+  auto model = std::make_shared<const FittedModel>(
+      fit_model(with_law(asset, law, "shaft", parameters), data_of(tests), nullptr, 1).value());
+  const auto strength = std::ranges::find(model->problem.shared, "shaft.torque_saturation.k_f", &Unknown::name);
+  ASSERT_NE(strength, model->problem.shared.end());
+  const auto place = static_cast<std::size_t>(strength - model->problem.shared.begin());
+  ASSERT_GT(standard_errors(*model)[place], 0.5 * parameters.front()) << "told by itself, too";
+  const PlantDescription* plant = find_plant(asset.model).value();
+  EXPECT_FALSE(not_told_from_zero(Trial{{{&law, "shaft"}}, std::move(model)}, {.share = 0.0, .plant = plant}));
 }
 
 TEST(TakesUpLittle, TellsByTheBestModelWhereThatMissesByLessThanTheDeclaredNoise) {

@@ -37,6 +37,8 @@ TEST(Readable, WithItsError) {
   EXPECT_EQ(readable_with_error(-4010.0, 60.0, "N"), "−4.010 ± 0.060 kN");
   EXPECT_EQ(readable_with_error(0.5, 0.0, "ohm"), "0.5000 ohm");
   EXPECT_EQ(readable_with_error(0.5, 12.0, "1"), "0 ± 12");
+  EXPECT_EQ(readable_with_error(1.0, 3e-9, ""), "1.000000 ± 3.0·10⁻⁹");
+  EXPECT_EQ(readable_with_error(-1e-7, 2e-3, "1"), "(0.0 ± 2.0)·10⁻³");
 }
 
 TEST(Readable, NumbersOfSentencesWriteTheirPowersOfTen) {

@@ -36,6 +36,17 @@ struct StrengthSize {
   return {.name = name, .unit = unit, .meaning = meaning, .start = std::move(grid), .min = min, .max = max};
 }
 
+/// Where along its way something acts.
+[[nodiscard]] inline LawParameter place(std::string_view name, std::vector<double> grid) {
+  return {.name = name,
+          .unit = "m",
+          .meaning = "position",
+          .start = std::move(grid),
+          .min = 0.0,
+          .max = 0.3,
+          .place = true};
+}
+
 /// Speed over which dry friction changes direction: the rounding of a sliding contact.
 [[nodiscard]] inline LawParameter reversal_speed() {
   return shape("v_s", "m/s", "speed over which the direction changes", {1e-4, 2e-5, 5e-4}, 5e-6, 5e-3);

@@ -13,14 +13,13 @@ Law position_dependent_load_bell() {
           .form = "bell",
           .kind = SiteKind::piston_force,
           .equation = "F_b exp(-abs((x - x_b) / w_b)^m)",
-          .meaning = "load that rises or falls around one position of the stem, more gently or more sharply",
+          .meaning = "load that rises or falls around one position, more gently or more sharply",
           .energy = "none: a function of position alone takes and returns the same work",
           .source = kClosedFormSource,
           .closed_form = true,
           .parameters = {strength("F_b", "N", "load at the position",
                                   {.usual = 2e3, .significant = 600.0, .max = 1e5, .either_sign = true}),
-                         shape("x_b", "m", "position", {0.052}, 0.0, 0.3),
-                         shape("w_b", "m", "half width", {4e-3}, 5e-4, 0.1),
+                         place("x_b", {0.052}), shape("w_b", "m", "half width", {4e-3}, 5e-4, 0.1),
                          shape("m", "1", "sharpness of its flanks", {2.0, 3.0}, 1.0, 10.0)},
           .evaluate = &evaluate_position_dependent_load_bell};
 }

@@ -16,12 +16,12 @@ Law position_dependent_load_bump() {
           .form = "bump",
           .kind = SiteKind::piston_force,
           .equation = "F_b exp(-((x - x_b) / w_b)^2)",
-          .meaning = "load that rises or falls around one position of the stem",
+          .meaning = "load that rises or falls around one position",
           .energy = "none: a function of position alone takes and returns the same work",
           .source = "potential force; local basis function",
           .parameters = {strength("F_b", "N", "load at the position",
                                   {.usual = 2e3, .significant = 600.0, .max = 1e5, .either_sign = true}),
-                         shape("x_b", "m", "position", {0.052, 0.047, 0.057, 0.042, 0.062}, 0.0, 0.3),
+                         place("x_b", {0.052, 0.047, 0.057, 0.042, 0.062}),
                          shape("w_b", "m", "half width", {4e-3, 1.5e-3, 1e-2}, 5e-4, 0.1)},
           .evaluate = &evaluate_position_dependent_load_bump};
 }

@@ -13,7 +13,7 @@ Law quadratic_drag() {
           .form = "",
           .kind = SiteKind::piston_force,
           .equation = "k v abs(v)",
-          .meaning = "force that grows with the square of speed: fluid pushed through narrow passages by the stem",
+          .meaning = "force that grows with the square of speed: fluid pushed through narrow passages",
           .energy = "k >= 0: it always opposes the motion",
           .source = "Merritt, Hydraulic Control Systems (1967), section 3: orifice flow",
           .parameters = {strength("k", "N s2/m2", "drag", {.usual = 1e9, .significant = 3.4e8, .max = 1e12})},

@@ -9,20 +9,20 @@ static LawOutput evaluate_unlisted_tight_spot(const LawInput& in) {
 }
 
 Law unlisted_tight_spot() {
-  return {.id = kUnlisted,
-          .form = "tight_spot",
-          .kind = SiteKind::piston_force,
-          .equation = "F_t tanh(v / v_t) exp(-((x - x_t) / w_t)^2)",
-          .meaning = "dry friction around one position of the stem: a tight spot, a bent rod",
-          .energy = "F_t >= 0: it always opposes the motion",
-          .source = kClosedFormSource,
-          .closed_form = true,
-          .parameters = {strength("F_t", "N", "friction force at the position",
-                                  {.usual = 2e3, .significant = 600.0, .max = 1e5}),
-                         shape("x_t", "m", "position", {0.052, 0.047, 0.057}, 0.0, 0.3),
-                         shape("w_t", "m", "half width", {4e-3, 1.5e-3}, 5e-4, 0.1),
-                         shape("v_t", "m/s", "speed over which the direction changes", {1e-4}, 5e-6, 5e-3)},
-          .evaluate = &evaluate_unlisted_tight_spot};
+  return {
+      .id = kUnlisted,
+      .form = "tight_spot",
+      .kind = SiteKind::piston_force,
+      .equation = "F_t tanh(v / v_t) exp(-((x - x_t) / w_t)^2)",
+      .meaning = "dry friction around one position: a tight spot, a bent rod",
+      .energy = "F_t >= 0: it always opposes the motion",
+      .source = kClosedFormSource,
+      .closed_form = true,
+      .parameters = {strength("F_t", "N", "friction force at the position",
+                              {.usual = 2e3, .significant = 600.0, .max = 1e5}),
+                     place("x_t", {0.052, 0.047, 0.057}), shape("w_t", "m", "half width", {4e-3, 1.5e-3}, 5e-4, 0.1),
+                     shape("v_t", "m/s", "speed over which the direction changes", {1e-4}, 5e-6, 5e-3)},
+      .evaluate = &evaluate_unlisted_tight_spot};
 }
 
 }  // namespace sealwatch::laws

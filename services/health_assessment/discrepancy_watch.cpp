@@ -168,14 +168,20 @@ void DiscrepancyWatch::settle(const StateReport& report, Conclusion& conclusion)
   if (settled_.size() > kMostSettled) settled_.pop_front();
 }
 
+bool DiscrepancyWatch::seems_settled(const std::string& pst_id) const {
+  return concluded_.contains(pst_id) &&
+         std::ranges::none_of(deviating_, [&](const StateReport& report) { return report.header.pst_id == pst_id; });
+}
+
+std::size_t DiscrepancyWatch::held() const {
+  return 2 * row_.size() + windows_.overtaken_or([this](const std::string& pst_id) { return seems_settled(pst_id); });
+}
+
 /// Windows that came, after this process was started again, of tests that had been settled before. Kept tests have all
 /// come back by the first new report.
 void DiscrepancyWatch::forget_windows_of_settled_tests() {
-  const auto waits = [this](const std::string& pst_id) {
-    return std::ranges::any_of(deviating_, [&](const StateReport& report) { return report.header.pst_id == pst_id; });
-  };
-  const auto is_settled = [&](const std::string& pst_id) { return concluded_.contains(pst_id) && !waits(pst_id); };
-  std::ranges::move(windows_.drop_if(is_settled), std::back_inserter(no_longer_needed_));
+  std::ranges::move(windows_.drop_if([this](const std::string& pst_id) { return seems_settled(pst_id); }),
+                    std::back_inserter(no_longer_needed_));
 }
 
 /// A test that deviates and whose window is there joins the row; those before it, whose windows did not come, do not.

@@ -54,8 +54,8 @@ class DiscrepancyWatch {
             const Explainer& explainer, Conclusion& conclusion);
   /// Takes tests out that no longer count, an analysis of them included: the next one is of others.
   void forget(const std::function<bool(const std::string& pst_id)>& is_retracted, Conclusion& conclusion);
-  /// Inputs that wait for nothing and are kept for the next analysis.
-  [[nodiscard]] std::size_t held() const { return 2 * row_.size() + windows_.overtaken(); }
+  /// Inputs that wait for nothing: kept for the next analysis, or until the next report shows that they are not needed.
+  [[nodiscard]] std::size_t held() const;
 
  private:
   using Window = std::shared_ptr<const TestWindow>;
@@ -76,6 +76,9 @@ class DiscrepancyWatch {
   void note_concluded(const std::string& pst_id, bool admissible, bool first_after_replacement);
   void end_row(Conclusion& conclusion);
   void settle(const StateReport& report, Conclusion& conclusion);
+  /// Concluded, and its report was let go of: perhaps before this process was started, which then does not know whether
+  /// the report is still to come back.
+  [[nodiscard]] bool seems_settled(const std::string& pst_id) const;
   void forget_windows_of_settled_tests();
   void keep_complete_test(const std::string& pst_id, const AssetConfig& asset, const Explainer& explainer,
                           Conclusion& conclusion);

@@ -64,7 +64,7 @@ struct LawParameter {
   /// Size of a strength from which an engineer would care: about 1 % of what the element carries.
   double significant = 0.0;
   bool own_size = false;  ///< of a plant's own law: its numbers are that plant's already
-  bool place = false;     ///< where along a signal something acts: a plant of one's own may have it below zero, too
+  bool place = false;     ///< around which something acts: a plant of one's own may have it below zero, too
 };
 
 /// A width over which a corner is rounded, as large as `eha` has it.

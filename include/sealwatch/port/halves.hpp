@@ -57,6 +57,12 @@ class Halves {
   [[nodiscard]] std::size_t overtaken() const {
     return static_cast<std::size_t>(std::distance(waiting_.begin(), waiting_.lower_bound(overtaken_)));
   }
+  /// The same, and those of whose tests that is true.
+  template <class Predicate>
+  [[nodiscard]] std::size_t overtaken_or(const Predicate& is_meant) const {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        waiting_, [&](const auto& one) { return one.first < overtaken_ || is_meant(one.second.pst_id); }));
+  }
   [[nodiscard]] bool has(const std::string& key) const { return numbers_.contains(key); }
   /// Whether what it says is here; if not, it is asked for.
   [[nodiscard]] bool is_here(const std::string& key, Conclusion& conclusion) const {

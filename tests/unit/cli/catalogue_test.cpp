@@ -114,7 +114,7 @@ TEST(LawsCommand, OneLawTellsItsSourceAndWhatKeepsItPhysical) {
   EXPECT_THAT(one.out, HasSubstr("source: Merritt"));
   EXPECT_THAT(one.out, HasSubstr("physical while: k >= 0"));
   EXPECT_THAT(as_one_line(one.out), HasSubstr("usual 1e+09, matters from 3.4e+08, range 0 to 1e+12"));
-  EXPECT_THAT(one.out, HasSubstr("v piston velocity [m/s]"));
+  EXPECT_THAT(one.out, HasSubstr("v velocity [m/s]"));
 }
 
 TEST(LawsCommand, AnUnknownNameIsAnErrorWithTheNearest) {

@@ -36,7 +36,7 @@ struct StrengthSize {
   return {.name = name, .unit = unit, .meaning = meaning, .start = std::move(grid), .min = min, .max = max};
 }
 
-/// Where along its way something acts.
+/// Around which position something acts. (A step below zero is a constant force for all else: it stays above.)
 [[nodiscard]] inline LawParameter place(std::string_view name, std::vector<double> grid) {
   return {.name = name,
           .unit = "m",

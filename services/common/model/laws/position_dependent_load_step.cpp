@@ -21,7 +21,7 @@ Law position_dependent_load_step() {
           .source = "potential force; rounded step",
           .parameters = {strength("F_s", "N", "load beyond the position",
                                   {.usual = 2e3, .significant = 600.0, .max = 1e5, .either_sign = true}),
-                         place("x_s", {0.052, 0.047, 0.057}),
+                         shape("x_s", "m", "position", {0.052, 0.047, 0.057}, 0.0, 0.3),
                          shape("w_s", "m", "half width of the step", {1e-3, 4e-3}, 2e-4, 0.05)},
           .evaluate = &evaluate_position_dependent_load_step};
 }

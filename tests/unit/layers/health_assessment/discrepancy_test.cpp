@@ -8,6 +8,7 @@
 namespace sealwatch {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -233,6 +234,21 @@ TEST(Discrepancy, KeptTestsAreHeldAndAllOthersConsumed) {
   }
   EXPECT_EQ(watch->held(), 0U);
   EXPECT_EQ(open, 0U);
+}
+
+/// Killed between a report and its window, which comes last of all: it waits for nothing that would come within a month.
+TEST(Discrepancy, AWindowThatComesAfterARestartBehindAllReportsIsNotWaitedFor) {
+  const TestMessages first = test(0, Residual::small), last = test(1, Residual::small);
+  std::unique_ptr<Layer> killed = layer(), started = layer();
+  (void)killed->receive(Message(first.features));
+  for (const Message& output : completed(killed->receive(Message(first.report))).outputs) started->restore(output);
+  EXPECT_TRUE(completed(started->receive(Message(first.window))).consumed.empty());
+  EXPECT_EQ(started->held(), 1U);
+  std::vector<std::string> consumed;
+  for (const Message& message : messages_of({last}))
+    std::ranges::move(completed(started->receive(message)).consumed, std::back_inserter(consumed));
+  EXPECT_THAT(consumed, Contains(first.window.header.message_id)) << "the next report shows that it is not needed";
+  EXPECT_EQ(started->held(), 0U);
 }
 
 }  // namespace

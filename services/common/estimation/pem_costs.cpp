@@ -81,6 +81,7 @@ bool RecordingCost::update(const double* shared, const double* own, bool may_kee
 }
 
 Bend RecordingCost::bend(const Eigen::VectorXd& step) const {
+  if (sets_out_) return {.slope = Eigen::VectorXd::Zero(step.size())};  // of this recording nothing moved
   const Eigen::VectorXd a = linearisation_.residual - from_.residual - jacobian_times(problem_, from_, kept_, step);
   return {.slope = jacobian_transposed_times(problem_, from_, kept_, a),
           .with_residual = from_.residual.dot(a),

@@ -60,6 +60,8 @@ class Analysis {
   // a seal that wears leaves nothing. What else differs from test to test is asked beside the laws. `from`: what is
   // known already.
   Status look_from(std::optional<Trial> from);
+  // The baseline ended in a local minimum: everything anew from a better one, which leaves less than half of its misfit.
+  Status look_beside_better(std::shared_ptr<const FittedModel> baseline);
   // Whether another parameter with a value for each test promises more than what wears, beside the same laws: wear fills
   // its place.
   [[nodiscard]] bool another_differs_rather(const Trial& common) const;

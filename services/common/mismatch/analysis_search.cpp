@@ -14,6 +14,7 @@
 #include "services/common/mismatch/resolution.hpp"
 #include "services/common/mismatch/telling.hpp"
 #include "services/common/mismatch/tolerance.hpp"
+#include "services/common/mismatch/usual_ranges.hpp"
 #include "services/common/mismatch/value_search.hpp"
 #include "services/common/mismatch/value_swaps.hpp"
 #include "services/common/mismatch/verdict.hpp"
@@ -112,6 +113,7 @@ Status Analysis::look_from(std::optional<Trial> from) {
   if (asks && std::ranges::none_of(known.tried, ends_it)) {
     tell("setting out from the recorded states", 0.2);
     HeldStart held = start_from_held(*baseline_, prepared(fit_), options);
+    if (held.trial && held.trial->effects.empty()) return look_beside_better(std::move(held.trial->model));
     from = std::move(held.trial);
     if (from && held.was_cut) time_.add_not_asked({"further laws with the simulation held to the recorded states"});
   }
@@ -138,6 +140,15 @@ Status Analysis::look_from(std::optional<Trial> from) {
   if (!own_->goes_its_way) ask_values_in_place_of_own();
   if (!why_none_) take_over(*own_);
   return {};
+}
+
+Status Analysis::look_beside_better(std::shared_ptr<const FittedModel> baseline) {
+  forget_predictions();
+  baseline_ = std::move(baseline);
+  for (std::string& sentence : wider_ranges_in_words(baseline_->asset))
+    if (std::ranges::find(result_.notes, sentence) == result_.notes.end()) result_.notes.push_back(std::move(sentence));
+  own_.reset();
+  return look_from(std::nullopt);
 }
 
 bool Analysis::another_differs_rather(const Trial& common) const {

@@ -1,6 +1,7 @@
 #include "services/common/mismatch/baseline.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "sealwatch/model/driving_channels.hpp"
 #include "services/common/mismatch/averaged_inputs.hpp"
@@ -12,6 +13,7 @@
 #include "services/common/mismatch/telling.hpp"
 #include "services/common/mismatch/tolerance.hpp"
 #include "services/common/mismatch/unrecorded_input.hpp"
+#include "services/common/mismatch/usual_ranges.hpp"
 #include "services/common/mismatch/windows.hpp"
 
 namespace sealwatch::mismatch {
@@ -30,11 +32,12 @@ class BaselineFit {
     if (!simulation) return fail(simulation.error());
     const std::vector<std::string> channels((*simulation)->channels().begin(), (*simulation)->channels().end());
     const NoiseColour of_inputs = noise_of_inputs();
-    baseline_.notes = find_noise(fit_, channels);
-    static_cast<void>(find_noise(holdout_, channels));  // its standard deviations; its colour is that of the others
+    find_noise(fit_, channels);
+    find_noise(holdout_, channels);  // its standard deviations; its colour is that of the others
     holdout_.colour.assign(holdout_.samples.size(), fit_.colour.front());
     baseline_.window_s = window_of(asset_, fit_.samples.front());
     Result<FittedModel> model = fit_by_averaged_inputs(asset_, prepared(fit_), nullptr, options_.threads);
+    baseline_.notes = colours_in_words(fit_, channels);
     if (model && by_measurements(asset_, fit_)) {
       const InputNoise noise = input_noise(*model, prepared(fit_), of_inputs, options_.seed);
       for (Data* data : {&holdout_, &fit_}) add_input_noise(*data, asset_, channels, noise);
@@ -59,6 +62,10 @@ class BaselineFit {
     model = of_fewer_windows(std::move(*model));
     if (!model) return fail(model.error());
     if (!time_.deadline().passed()) model = with_tolerances(std::move(*model));
+    if (!time_.deadline().passed()) model = with_colour_of_residuals(std::move(*model), channels);
+    if (!model) return fail(model.error());
+    if (!time_.deadline().passed()) model = beyond_usual_ranges(std::move(*model), prepared(fit_), options_.threads);
+    std::ranges::move(wider_ranges_in_words(model->asset), std::back_inserter(baseline_.notes));
     if (!windowed() && !time_.deadline().passed()) model = weighed_by_what_is_recorded(std::move(*model));
     if (!model) return fail(model.error());
     baseline_.model = std::make_shared<const FittedModel>(std::move(*model));
@@ -71,9 +78,17 @@ class BaselineFit {
     const std::vector<std::string> inputs = simulated_part(asset_, fit_.samples.front()).inputs;
     if (inputs.empty()) return {};
     fit_.resolution = holdout_.resolution = kMeasuredInputResolution;
-    static_cast<void>(find_noise(fit_, inputs));
+    find_noise(fit_, inputs);
     fit_.of_inputs = holdout_.of_inputs = fit_.colour.front();
     return fit_.of_inputs;
+  }
+
+  // Fitted again where its residuals refute the colour of the noise.
+  Result<FittedModel> with_colour_of_residuals(FittedModel model, const std::vector<std::string>& channels) {
+    if (!take_colour_of_residuals(model, fit_)) return model;
+    baseline_.notes = colours_in_words(fit_, channels);
+    holdout_.colour.assign(holdout_.samples.size(), fit_.colour.front());
+    return fit_model(model.asset, prepared(fit_), &model, options_.threads);
   }
 
   // Far off, the model's error decides, and some of the windows show it as well as all.

@@ -15,6 +15,8 @@ namespace sealwatch::mismatch {
 
 /// Misfit over the noise's share of it above which what is left is not noise.
 inline constexpr double kGross = 2.0;
+/// The same, of what is no more than noise: the noise's own size is known to a tenth.
+inline constexpr double kAtTheNoise = 1.1;
 /// Criterion by which another law must improve: it then is e^6 times likelier.
 inline constexpr double kWorthAnother = 12.0;
 /// Criterion within which two explanations are not told apart.

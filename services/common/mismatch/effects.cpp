@@ -126,7 +126,8 @@ std::vector<FoundParameter> parameters_of(const Effect& effect, const FittedMode
           found.value = setting->second.value;
     for (std::size_t k = 0; k < errors.size(); ++k) {
       if (model.problem.shared[k].name != name) continue;
-      found.std_error = std::hypot(errors[k], parameter.strength ? resolution.of(parameter) : 0.0);
+      const double feigned = parameter.strength ? resolution.of(parameter, outputs_moved_by(model, k)) : 0.0;
+      found.std_error = std::hypot(errors[k], feigned);
       found.at_bound = at_bound(model.problem.shared[k], model.optimum.point.shared[k]);
     }
     parameters.push_back(std::move(found));

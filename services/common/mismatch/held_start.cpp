@@ -12,15 +12,15 @@
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/explain_input.hpp"
 #include "services/common/mismatch/ranking.hpp"
+#include "services/common/mismatch/usual_ranges.hpp"
 #include "services/common/mismatch/verdict.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
 
 constexpr double kFarOff = 0.1;      // of the spread of a channel
-constexpr double kNoise = 1.1;       // times the noise's variance: its own size is known to a tenth
 constexpr double kTimeShare = 0.25;  // of the time limit: a start, and no more
-constexpr int kIterations = 8;       // to see whether simulations come nearer where they are held
+constexpr int kIterations = 8;       // to see whether simulations come nearer where they are held, or go on from there
 constexpr double kEnoughRows = 8000.0;
 // Within so many distances between samples: what adds up slowly shows; where that is still far off, noise is averaged and
 // little drifts; and where the plant swings faster than that, a few samples still see it swing.
@@ -153,15 +153,18 @@ class HeldSearch {
     allow_its_share();
     const std::optional<Trial> nothing = held_without_laws();
     if (!nothing) return {};
+    // Where the baseline ended in a local minimum, laws would make up for its values.
+    if (HeldStart better = running_free(*nothing, kIterations); better.trial) return better;
     Trial found = laws_beside(*nothing, Laws::listed);
     // Where listed laws leave anything, a curve without a mechanism may show it all, and listed ones only parts of it.
-    if (excess(*found.model) > kNoise) {
+    if (excess(*found.model) > kAtTheNoise) {
       allow_its_share();
       Trial forms = laws_beside(*nothing, Laws::all);
       if (share_explained(misfit_of(*found.model), misfit_of(*forms.model)) >= kExplainedAtLeast)
         found = std::move(forms);
     }
-    return running_free(std::move(found));
+    return found.effects.empty() ? HeldStart{.trial = {}, .was_cut = was_cut_}
+                                 : running_free(std::move(found), kSearchIterations);
   }
 
  private:
@@ -179,11 +182,12 @@ class HeldSearch {
     std::optional<Held> held = hold(*there, some, until_, options_.threads);
     if (!held) return std::nullopt;
     held_ = std::move(held->data);
-    return polished({{}, std::make_shared<const FittedModel>(std::move(held->model))}, held_, options_.threads);
+    FittedModel model = beyond_usual_ranges(std::move(held->model), held_, options_.threads);
+    return polished({{}, std::make_shared<const FittedModel>(std::move(model))}, held_, options_.threads);
   }
 
   Trial laws_beside(Trial trial, Laws laws) {
-    while (excess(*trial.model) > kNoise && static_cast<int>(trial.effects.size()) < options_.maximum_laws &&
+    while (excess(*trial.model) > kAtTheNoise && static_cast<int>(trial.effects.size()) < options_.maximum_laws &&
            add_best(trial, laws)) {
     }
     was_cut_ = was_cut_ || until_.was_met();
@@ -227,10 +231,9 @@ class HeldSearch {
   }
   [[nodiscard]] bool runs_free(const Trial& trial) const { return free_run_of(trial, 0).has_value(); }
 
-  [[nodiscard]] HeldStart running_free(Trial found) const {
+  [[nodiscard]] HeldStart running_free(Trial found, int iterations) const {
     HeldStart start{.trial = {}, .was_cut = was_cut_};
-    if (found.effects.empty()) return start;
-    const Result<FittedModel> free = free_run_of(found, kSearchIterations);
+    const Result<FittedModel> free = free_run_of(found, iterations);
     if (!free) return start;
     Result<FittedModel> model = fit_model(free->asset, data_, &*free, options_.threads);
     if (model && share_explained(misfit_of(baseline_), misfit_of(*model)) >= kExplainedAtLeast)

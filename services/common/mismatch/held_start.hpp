@@ -15,9 +15,9 @@ struct HeldStart {
   bool was_cut = false;  ///< not all laws were asked
 };
 
-/// The laws that are found with the simulations held, one after the other, refitted to free runs; nothing where there are
-/// none, where too little of the state is measured, or where free runs leave most of the misfit. `baseline`: fitted to
-/// `data`.
+/// The laws that are found with the simulations held, one after the other, refitted to free runs. No law: the baseline
+/// ended in a local minimum, and this is a better one. Nothing where too little of the state is measured, or where free
+/// runs leave most of the misfit. `baseline`: fitted to `data`.
 [[nodiscard]] HeldStart start_from_held(const FittedModel& baseline, const Data& data, const ExplainOptions& options);
 
 }  // namespace sealwatch::mismatch

@@ -257,13 +257,12 @@ void begin_with_what_shows(Naming& naming, const Data& data, const ExplainOption
 }
 
 // Whether the search goes on from the best of these trials without asking for pairs: it ends a gross misfit, or leaves
-// nothing (the noise's own size is known to a tenth, its scores tell the rest).
+// nothing.
 bool one_law_does(const std::vector<Trial>& trials, Naming& naming, const Data& data, const ExplainOptions& options) {
-  constexpr double kLeft = 1.1;
   const Trial* best = best_of(trials, smallest_dispersion(trials, *naming.best.model));
   if (best == nullptr) return false;
   if (excess(*naming.best.model) > kGross) return excess(*best->model) <= kGross;
-  if (best->model->misfit > kLeft * best->model->residuals) return false;
+  if (best->model->misfit > kAtTheNoise * best->model->residuals) return false;
   const auto left = look(naming, best->model, data, options);
   return left && !differs(left->p_value, *best->model, options.false_alarm_rate);
 }

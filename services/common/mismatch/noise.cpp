@@ -8,6 +8,7 @@
 
 #include "sealwatch/signal/noise_floor.hpp"
 #include "services/common/dense/dense.hpp"
+#include "services/common/mismatch/criterion.hpp"
 #include "services/common/text/format.hpp"
 #include "services/common/text/words.hpp"
 
@@ -171,6 +172,27 @@ Covariances correlations_of(const ChannelColour& colour) {
   return {1.0, first, second, a1 * second + a2 * first + a3};
 }
 
+// A channel's residuals in all recordings: products of those so many samples apart, over the noise's variance.
+struct Rest {
+  Covariances products{};
+  double whitened = 0.0;  // sum of squares
+  double samples = 0.0;
+};
+Rest rest_of(const FittedModel& model, Eigen::Index channel) {
+  Rest rest;
+  for (std::size_t k = 0; k < model.problem.recordings.size(); ++k) {
+    const PemRecording& recording = model.problem.recordings[k];
+    const Linearisation& at = model.optimum.at_optimum[k];
+    if (channel >= at.simulated.cols() || !std::isfinite(recording.noise_std(channel))) continue;
+    const Eigen::VectorXd plain =
+        (recording.simulation->recorded().col(channel) - at.simulated.col(channel)) / recording.noise_std(channel);
+    add_products(plain, rest.products);
+    rest.whitened += at.residual(Eigen::seqN(channel, at.simulated.rows(), at.simulated.cols())).squaredNorm();
+    rest.samples += static_cast<double>(plain.size());
+  }
+  return rest;
+}
+
 }  // namespace
 
 void add_products(const Eigen::Ref<const Eigen::VectorXd, 0, Eigen::InnerStride<>>& values, Covariances& sum) {
@@ -188,8 +210,7 @@ std::pair<ChannelColour, double> sum_of_noise(const ChannelColour& sensor, doubl
   return {white ? ChannelColour{} : autoregression(covariance), std::sqrt(covariance[0])};
 }
 
-std::vector<std::string> find_noise(Data& data, const std::vector<std::string>& channels) {
-  std::vector<std::string> sentences;
+void find_noise(Data& data, const std::vector<std::string>& channels) {
   data.colour.assign(data.samples.size(), NoiseColour(channels.size()));
   for (std::size_t c = 0; c < channels.size(); ++c) {
     const double floor = pooled_floor(data, channels[c]);
@@ -211,11 +232,38 @@ std::vector<std::string> find_noise(Data& data, const std::vector<std::string>& 
           series.noise_std =
               growth * signal::estimate_noise_floor(series.values, data.samples[k].time_s).standard_deviation;
     }
-    sentences.push_back(text::format(
-        "The noise of {} is correlated from sample to sample ({:.2f}); it was whitened by an autoregression.",
-        text::in_words(channels[c]), correlation));
   }
+}
+
+std::vector<std::string> colours_in_words(const Data& data, const std::vector<std::string>& channels) {
+  std::vector<std::string> sentences;
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    if (const ChannelColour& colour = data.colour.front()[c]; !colour.coefficients.empty())
+      sentences.push_back(text::format(
+          "The noise of {} is correlated from sample to sample ({:.2f}); it was whitened by an autoregression.",
+          text::in_words(channels[c]), correlations_of(colour)[1]));
   return sentences;
+}
+
+bool is_refuted(const ChannelColour& colour, double plain, double whitened) {
+  if (colour.coefficients.empty() || plain > kAtTheNoise) return false;
+  double most = 1.0;
+  for (const double a : colour.coefficients) most += std::abs(a);
+  const double gain = std::pow(most / colour.innovation_std, 2);
+  return whitened - 1.0 > gain * (kAtTheNoise - 1.0);
+}
+
+bool take_colour_of_residuals(const FittedModel& model, Data& data) {
+  bool taken = false;
+  for (std::size_t c = 0; c < data.colour.front().size(); ++c) {
+    const Rest rest = rest_of(model, static_cast<Eigen::Index>(c));
+    if (rest.samples == 0.0) continue;
+    if (!is_refuted(data.colour.front()[c], rest.products[0] / rest.samples, rest.whitened / rest.samples)) continue;
+    const ChannelColour colour = sum_of_noise({}, 0.0, rest.products).first;
+    for (NoiseColour& one : data.colour) one[c] = colour;
+    taken = true;
+  }
+  return taken;
 }
 
 }  // namespace sealwatch::mismatch

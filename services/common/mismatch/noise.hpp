@@ -8,7 +8,11 @@
 //                    what they take off beside is motion
 //   standard deviation   that of the coloured noise, where colour was found: differences do not see slow noise
 //
-// Never from a model's residuals. Yule-Walker: G. U. Yule, Phil. Trans. Royal Society A 226 (1927) 267.
+// Never from a model's residuals, which may hold the effect that is sought. They can refute a colour, though: what
+// whitening by it makes of noise of that colour is no larger, and of anything beside it at most its gain times as large,
+//   w - 1 <= g (p - 1),   g = max over frequencies |1 - sum_j a_j exp(-i w j)|^2 / s^2 <= (1 + sum_j |a_j|)^2 / s^2
+// with p the mean square of a channel's residuals over the noise's variance, w that of the whitened ones, s the
+// innovation's standard deviation. The colour of what rang in the quiet pieces is not the noise's. Yule-Walker: G. U. Yule, Phil. Trans. Royal Society A 226 (1927) 267.
 #pragma once
 
 #include <Eigen/Core>
@@ -31,8 +35,17 @@ void add_products(const Eigen::Ref<const Eigen::VectorXd, 0, Eigen::InnerStride<
 [[nodiscard]] std::pair<ChannelColour, double> sum_of_noise(const ChannelColour& sensor, double sensor_std,
                                                             const Covariances& more);
 
-/// Fills data.colour, and noise_std of the channels where slow noise is larger than differences say; sentences on what
-/// was found.
-[[nodiscard]] std::vector<std::string> find_noise(Data& data, const std::vector<std::string>& channels);
+/// Fills data.colour, and noise_std of the channels where slow noise is larger than differences say.
+void find_noise(Data& data, const std::vector<std::string>& channels);
+
+/// A sentence for each channel whose noise has a colour. `channels`: as they were given to find_noise().
+[[nodiscard]] std::vector<std::string> colours_in_words(const Data& data, const std::vector<std::string>& channels);
+
+/// Whether residuals at the noise refute this colour. `plain`, `whitened`: their mean squares over the noise's variance.
+[[nodiscard]] bool is_refuted(const ChannelColour& colour, double plain, double whitened);
+
+/// Gives channels whose colour the residuals refute that of the residuals; false where there are none. `model`: fitted to
+/// `data`.
+[[nodiscard]] bool take_colour_of_residuals(const FittedModel& model, Data& data);
 
 }  // namespace sealwatch::mismatch

@@ -190,9 +190,8 @@ Trial* known_without(Naming& naming, const FittedModel& whole, const std::vector
 }  // namespace
 
 bool is_at_the_noise(const Naming& naming, const ExplainOptions& options) {
-  constexpr double kLeft = 1.1;
   const FittedModel& model = *naming.best.model;
-  return model.misfit < kLeft * model.residuals && !differs(naming.last.p_value, model, options.false_alarm_rate);
+  return model.misfit < kAtTheNoise * model.residuals && !differs(naming.last.p_value, model, options.false_alarm_rate);
 }
 
 std::optional<Trial> without_law(Naming& naming, const Trial& trial, std::size_t slot, const Data& data, int threads) {

@@ -63,7 +63,9 @@ Told told_best(const FittedModel& model, const Effect& effect, const Resolution*
     const auto known = static_cast<std::size_t>(std::ranges::find_if(strengths, is_it) - strengths.begin());
     if (known == strengths.size() || !std::isfinite(errors[known]) || errors[known] <= 0.0)
       return {std::numeric_limits<double>::infinity(), &strength};
-    const double error = resolution == nullptr ? errors[known] : std::hypot(errors[known], resolution->of(strength));
+    const double feigned =
+        resolution == nullptr ? 0.0 : resolution->of(strength, outputs_moved_by(model, strengths[known]));
+    const double error = std::hypot(errors[known], feigned);
     const double by = std::abs(*estimate_of(model, name)) / error;
     if (best.strength == nullptr || by > best.errors) best = {by, &strength};
   }

@@ -423,7 +423,7 @@ Result<Screening> screen_candidates(const FittedModel& model, const Data& data, 
   if (projected.all.gram.rows() > 0)
     find_leakage_shifts(screening, model, projected.all.gram, projected.all.cross.middleCols(1, size));
   screening.misfit = model.misfit - (model.optimum.converged ? 0.0 : 2.0 * model.optimum.promised);
-  evaluate(screening, projected.raw_norm.head(size), stacked(projected.left, &Left::grams),
+  evaluate(screening, projected.raw_norm.head(size), stacked(projected.left, &Left::grams), model.residuals,
            resolution_of(data, model.problem.recordings.front().simulation->plant()));
   calibrate(screening, options);
   return screening;

@@ -27,8 +27,9 @@ std::vector<bool> sign_bounds(const Screening& screening, const Variant& variant
   return positive;
 }
 
-// k_0 in usual sizes.
-Eigen::VectorXd resolution_of(const Screening& screening, const Variant& variant, const Resolution& resolution) {
+// k_0 in usual sizes. `gram`: of the variant's columns, each for a usual size.
+Eigen::VectorXd resolution_of(const Screening& screening, const Variant& variant, const Eigen::MatrixXd& gram,
+                              double residuals, const Resolution& resolution) {
   const Candidate& candidate = screening.candidates[variant.candidate];
   const std::vector<std::size_t> strengths = strengths_of(*candidate.law);
   Eigen::VectorXd least = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(variant.columns.size()));
@@ -38,7 +39,8 @@ Eigen::VectorXd resolution_of(const Screening& screening, const Variant& variant
     const double unit =
         std::abs(screening.unit[static_cast<std::size_t>(variant.columns[static_cast<std::size_t>(k)])]);
     const bool bias = is_bias(candidate.law->kind);
-    least(k) = bias ? resolution.share : resolution.of(strength) / unit;
+    const double moved = std::sqrt(std::max(gram(k, k), 0.0) / residuals) / unit;
+    least(k) = bias ? resolution.share : resolution.of(strength, moved) / unit;
   }
   return least;
 }
@@ -101,14 +103,14 @@ double score_of(const Eigen::MatrixXd& gram, const Eigen::VectorXd& gradient, co
 
 }  // namespace
 
-void evaluate(Screening& screening, const Eigen::VectorXd& raw_norm, const Eigen::MatrixXd& grams,
+void evaluate(Screening& screening, const Eigen::VectorXd& raw_norm, const Eigen::MatrixXd& grams, double residuals,
               const Resolution& resolution) {
   Eigen::Index entry = 0;
   for (Variant& variant : screening.variants) {
     const Eigen::VectorXd gradient = subvector(screening.gradient, variant.columns);
     const Eigen::MatrixXd gram = submatrix(screening.gram, variant.columns);
     const LinearStep step = bounded_step(gram, gradient, sign_bounds(screening, variant));
-    const Eigen::VectorXd least = resolution_of(screening, variant, resolution);
+    const Eigen::VectorXd least = resolution_of(screening, variant, gram, residuals, resolution);
     const auto entries = static_cast<Eigen::Index>(variant.columns.size() * variant.columns.size());
     const Eigen::VectorXd own = bounded_step(gram, gradient, std::vector<bool>(variant.columns.size(), false)).strength;
     const Eigen::MatrixXd variance =

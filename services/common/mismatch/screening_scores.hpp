@@ -8,8 +8,8 @@
 namespace sealwatch::mismatch {
 
 /// Fills in every variant. `raw_norm`: |s_j|^2 before anything was taken off; `grams`: s~_b' s~_b of each variant per
-/// block, entries one after the other.
-void evaluate(Screening& screening, const Eigen::VectorXd& raw_norm, const Eigen::MatrixXd& grams,
+/// block, entries one after the other; `residuals`: how many there are.
+void evaluate(Screening& screening, const Eigen::VectorXd& raw_norm, const Eigen::MatrixXd& grams, double residuals,
               const Resolution& resolution);
 
 /// Smallest p value of all variants when g is nothing but noise, N(0, G); how many independent tests it stands for.

@@ -9,9 +9,14 @@ namespace sealwatch {
 namespace {
 
 // A sensor's and a recording's laws go by their channel; some laws of a site are never asked, as they see nothing there.
-double size_of(const PlantDescription& plant, std::string_view unit) {
+const LawSize* find_size(const PlantDescription& plant, std::string_view unit) {
   const auto size = std::ranges::find(plant.law_sizes, unit, &LawSize::unit);
-  return size == plant.law_sizes.end() ? 1.0 : size->factor;
+  return size == plant.law_sizes.end() ? nullptr : &*size;
+}
+
+double size_of(const PlantDescription& plant, std::string_view unit) {
+  const LawSize* const size = find_size(plant, unit);
+  return size == nullptr ? 1.0 : size->factor;
 }
 
 bool is_of_a_file(const PlantDescription& plant) { return !plant.file.empty(); }
@@ -24,9 +29,11 @@ double law_size(const PlantDescription& plant, const LawParameter& parameter) {
 
 LawBounds law_bounds(const PlantDescription& plant, const LawParameter& parameter) {
   // Whoever describes a plant gives sizes by order of magnitude: a strength that ends at a bound made of them would leave
-  // the rest of what it does to laws that are not there.
+  // the rest of what it does to laws that are not there. What has no unit (a gain, a share, a clock's rate) has the same
+  // bounds everywhere.
   constexpr double kRoom = 100.0;
-  const bool guessed = parameter.strength && !parameter.own_size && is_of_a_file(plant);
+  const bool guessed = parameter.strength && !parameter.own_size && is_of_a_file(plant) &&
+                       find_size(plant, parameter.unit) != nullptr;
   const double size = law_size(plant, parameter) * (guessed ? kRoom : 1.0);
   const double least = parameter.place && is_of_a_file(plant) ? -parameter.max : parameter.min;
   return {size * least, size * parameter.max};

@@ -77,8 +77,8 @@ class Controls {
     if (std::ranges::find(plan_.channels, "motor_voltage") == plan_.channels.end()) return {};
     std::vector<std::string> outputs = plan_.channels;
     std::erase(outputs, "motor_voltage");
-    static_cast<void>(mismatch::find_noise(fit_, outputs));
-    static_cast<void>(mismatch::find_noise(holdout_, outputs));
+    mismatch::find_noise(fit_, outputs);
+    mismatch::find_noise(holdout_, outputs);
     holdout_.colour.assign(holdout_.samples.size(), fit_.colour.front());
     auto model = mismatch::fit_model(asset_, fit_, nullptr, threads_);
     if (!model) return {};

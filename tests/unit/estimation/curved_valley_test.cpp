@@ -2,9 +2,11 @@
 // leave the valley; the search follows its bend.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <random>
 
+#include "services/common/estimation/pem_costs.hpp"
 #include "tests/unit/estimation/search_of_plant.hpp"
 
 namespace sealwatch {
@@ -42,6 +44,20 @@ TEST(CurvedValley, IsFollowedAlongItsBend) {
   EXPECT_LT(valley.optimum.iterations, 25);
   EXPECT_LT(valley.optimum.cost, 0.5 * 1.3 * 400.0);  // the noise of both outputs
   EXPECT_NEAR(valley.value("a"), kA, 4.0 * kRough / std::sqrt(200.0));
+}
+
+/// A step may move what belongs to other recordings only.
+TEST(CurvedValley, ARecordingOfWhichNothingMovesHasNoBend) {
+  const SearchOfPlant valley = search_of_plant("valley", kPlant, recording());
+  const std::atomic<bool> failed = false;
+  const RecordingCost cost(valley.problem, 0, failed);
+  const PemPoint& at = valley.optimum.point;
+  ASSERT_TRUE(cost.update(at.shared.data(), at.own[0].data()));
+  cost.set_out_from_here();
+  ASSERT_TRUE(cost.update(at.shared.data(), at.own[0].data()));
+  const Bend bend = cost.bend(Eigen::VectorXd::Zero(2));
+  EXPECT_EQ(bend.slope, Eigen::VectorXd::Zero(2));
+  EXPECT_EQ(bend.square, 0.0);
 }
 
 }  // namespace

@@ -131,11 +131,12 @@ TEST(Resolution, IsAShareOfWhatMattersAndOfTheSamplingInterval) {
   delay.significant = 1e-3;
   offset.unit = "channel";
   offset.significant = 1.0;
-  EXPECT_DOUBLE_EQ(resolution_of(data, plant).of(force), 0.5);
-  EXPECT_NEAR(resolution_of(data, plant).of(delay), 5e-4, 1e-5);
-  EXPECT_EQ(resolution_of(data, plant).of(offset), 0.0);
+  EXPECT_DOUBLE_EQ(resolution_of(data, plant).of(force, 0.0), 0.5);
+  EXPECT_DOUBLE_EQ(resolution_of(data, plant).of(force, 10.0), 0.1);  // moves the outputs by their noise
+  EXPECT_NEAR(resolution_of(data, plant).of(delay, 0.0), 5e-4, 1e-5);
+  EXPECT_EQ(resolution_of(data, plant).of(offset, 0.0), 0.0);
   data.samples[0].input_hold = true;
-  EXPECT_DOUBLE_EQ(resolution_of(data, plant).of(delay), 1e-5);
+  EXPECT_DOUBLE_EQ(resolution_of(data, plant).of(delay, 0.0), 1e-5);
 }
 
 // Two recordings with a value of their own each, which both read through one gain that is only known within 0.5.

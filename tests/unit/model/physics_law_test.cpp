@@ -279,6 +279,8 @@ TEST(LawSizes, AStrengthHasRoomWhereAPlantsFileGivesItsSize) {
   EXPECT_GE(law_bounds(own, force).max, 6.0 * 0.1 * force.max);
   EXPECT_EQ(law_bounds(own, force).min, 0.0) << "it still takes energy only";
   EXPECT_EQ(law_bounds(own, speed).max, 10.0 * speed.max) << "a shape has no room";
+  const LawParameter& rate = (**find_law("clock_rate", {"c"})).parameters[0];
+  EXPECT_EQ(law_bounds(own, rate).max, rate.max) << "a clock that runs six times as fast is none";
 }
 
 }  // namespace

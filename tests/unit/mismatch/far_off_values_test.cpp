@@ -1,0 +1,136 @@
+// explain where a model's values are far off: a cart on a spring that a voice coil pushes, its spring a hundred times
+// stiffer in the plant's file than on the bench, or its sizes of laws a hundred times too large. Recordings by the
+// midpoint rule, which shares nothing with the simulation.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "sealwatch/mismatch/explain.hpp"
+#include "services/common/runtime/asset_file.hpp"
+#include "services/common/runtime/plant_file.hpp"
+#include "tests/unit/model/recording_for_tests.hpp"
+
+namespace sealwatch {
+namespace {
+
+std::string cart(const std::string& name, const std::string& spring, const std::string& newton) {
+  return "name: " + name +
+         "\n"
+         "meaning: cart on a spring that a voice coil pushes\n"
+         "inputs:\n"
+         "  current: {unit: A, course: held, role: drive, range: [-10, 10], meaning: coil current}\n"
+         "outputs:\n"
+         "  position: {value: x, unit: m, noise_std: 2.0e-5, meaning: cart position}\n"
+         "parameters:\n"
+         "  m: {value: 2.0, unit: kg, tolerance: 0.01, meaning: cart}\n"
+         "  k: {" +
+         spring +
+         ", unit: N/m, estimate: true, meaning: spring}\n"
+         "  c: {value: 4, min: 0.01, max: 100, unit: N s/m, estimate: true, meaning: damping}\n"
+         "  K: {value: 12, unit: N/A, tolerance: 0.02, meaning: force constant}\n"
+         "states:\n"
+         "  x: {der: v, unit: m, start: position}\n"
+         "  v: {der: (K*current - c*v - k*x - F)/m, unit: m/s, start: rate(position), size: 0.1}\n"
+         "elements:\n"
+         "  cart:\n"
+         "    meaning: forces on the cart\n"
+         "    sites:\n"
+         "      - {kind: piston_force, symbol: F, signals: {speed: v, position: x}}\n"
+         "law_sizes: {N: " +
+         newton + ", m: 0.01, m/s: 0.2, N s/m: 0.5, N s2/m2: 5.0, N/m: 100, s: 1}\n";
+}
+
+struct Truth {
+  double spring_N_m = 1000.0;
+  double friction_N = 0.0;  ///< Coulomb
+};
+
+Recording recorded(const std::string& name, const Truth& truth, unsigned seed) {
+  constexpr double kStep_s = 1e-5, kSample_s = 5e-3, kDuration_s = 10.0;
+  constexpr double kMass_kg = 2.0, kDrag_N_s_m = 5.0, kForce_N_A = 12.1;
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0.0, 2e-5);
+  std::uniform_real_distribution<double> wait(0.1, 1.0), level(-6.0, 6.0);
+  Recording recording;
+  recording.recording_id = name;
+  Series current{"current", "A", 0.0, {}}, position{"position", "m", 2e-5, {}};
+  recording.samples.input_hold = true;
+  const long each = std::lround(kSample_s / kStep_s), steps = std::lround(kDuration_s / kStep_s);
+  double x = 0.0, v = 0.0, held_A = 0.0, next_s = wait(random);
+  for (long step = 0; step <= steps; ++step) {
+    const double t = static_cast<double>(step) * kStep_s;
+    if (step % each == 0) {
+      if (t >= next_s) {
+        held_A = level(random);
+        next_s += wait(random);
+      }
+      recording.samples.time_s.push_back(t);
+      current.values.push_back(held_A);
+      position.values.push_back(x + noise(random));
+    }
+    const auto acceleration = [&](double at, double speed) {
+      return (kForce_N_A * held_A - kDrag_N_s_m * speed - truth.spring_N_m * at -
+              truth.friction_N * std::tanh(speed / 1e-3)) /
+             kMass_kg;
+    };
+    const double middle = v + 0.5 * kStep_s * acceleration(x, v);
+    v += kStep_s * acceleration(x + 0.5 * kStep_s * v, middle);
+    x += kStep_s * middle;
+  }
+  recording.samples.channels = {std::move(current), std::move(position)};
+  return recording;
+}
+
+// `spring`, `newton`: what the plant's file says of them.
+mismatch::Explanation explained(const std::string& name, const std::string& spring, const std::string& newton,
+                                const Truth& truth) {
+  const std::string file = ::testing::TempDir() + name + ".yaml";
+  std::ofstream(file) << cart(name, spring, newton);
+  const auto plant = load_plant(file);
+  if (!plant) throw std::runtime_error(combine(plant.error()).describe());
+  const std::vector<Recording> fit = {recorded("first", truth, 1), recorded("second", truth, 2),
+                                      recorded("third", truth, 3)};
+  const auto found = mismatch::explain(nominal_asset((*plant)->name), fit, std::vector{recorded("apart", truth, 4)});
+  if (!found) throw std::runtime_error(found.error().describe());
+  return *found;
+}
+
+void expect_friction(const mismatch::Explanation& found, double friction_N) {
+  ASSERT_EQ(found.verdict, MismatchVerdict::mismatch) << found.summary;
+  ASSERT_EQ(found.effects.size(), 1U) << found.summary;
+  EXPECT_EQ(found.effects[0].what.id, "coulomb_friction") << found.summary;
+  const mismatch::FoundParameter& strength = found.effects[0].parameters.at(0);
+  EXPECT_NEAR(strength.value, friction_N, 0.05 * friction_N);
+  EXPECT_LT(strength.std_error, 0.05 * friction_N) << "no better known than a hundredth of a size that is far off";
+}
+
+/// By a size of 180 N for what matters, 1.5 N were nothing; but the recording shows them 150 times its noise.
+TEST(FarOffValues, ALawThatTheRecordingShowsPlainlyIsFoundBesideSizesThatAreFarOff) {
+  expect_friction(explained("sizes", "value: 3000", "0.3", {.friction_N = 1.5}), 1.5);
+}
+
+/// The free run of a spring a hundred times too stiff hardly moves, whichever way its values change.
+TEST(FarOffValues, AFitGoesOnFromTheRecordedStatesWhereItEndedInALocalMinimum) {
+  const mismatch::Explanation found =
+      explained("valley", "value: 3000, min: 1, max: 1.0e6", "0.003", {.spring_N_m = 31.0});
+  EXPECT_EQ(found.verdict, MismatchVerdict::consistent) << found.summary;
+}
+
+TEST(FarOffValues, AFitGoesBeyondARangeThatNobodyGave) {
+  const mismatch::Explanation found = explained("range", "value: 3000", "0.003", {.spring_N_m = 31.0});
+  EXPECT_EQ(found.verdict, MismatchVerdict::consistent) << found.summary;
+  const auto tells = [](const std::string& note) { return note.starts_with("No range is given for k"); };
+  EXPECT_TRUE(std::ranges::any_of(found.notes, tells));
+}
+
+TEST(FarOffValues, PhysicsIsFoundBesideThem) {
+  expect_friction(explained("beside", "value: 3000", "0.003", {.spring_N_m = 31.0, .friction_N = 1.5}), 1.5);
+}
+
+}  // namespace
+}  // namespace sealwatch

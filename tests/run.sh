@@ -2,7 +2,8 @@
 # Installs, builds and runs every test of sealwatch. The last lines are ctest's own summary.
 #   tests/run.sh                 everything
 #   tests/run.sh -R forecast     builds everything; what follows goes to ctest
-# One program alone: ninja -C build/release forecast_test && ctest --test-dir build/release -R '^forecast_test'
+# One program alone: deploy/build.sh release -DSEALWATCH_TESTS=ON --target forecast_test
+#                    ctest --test-dir build/release -R '^forecast_test'
 set -euo pipefail
 case "${1:-}" in
   -h | --help)

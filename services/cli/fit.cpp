@@ -167,13 +167,12 @@ void print_text(const AssetConfig& asset, const std::vector<std::string>& record
     if (parameter.free) rows.push_back({parameter});
   for (std::size_t k = 0; k < fit.loads.size(); ++k)
     if (fit.loads.size() > 1) rows.push_back({fit.loads[k], std::filesystem::path(recordings[k]).filename().string()});
-  if (!fit.report.admissible && !rows.empty())
-    std::printf("\n  Where the search ended, for comparison; these values do not describe the actuator:\n");
+  if (!fit.report.admissible && !rows.empty()) std::printf("\n  Values at the end of the search; do not use them:\n");
   std::printf("\n%s", estimates_table(rows).c_str());
   std::printf("\n%s", channels_table(fit.report.channels).c_str());
   std::printf("\n  %s\n", wrapped(fit.report.termination, 110, 2).c_str());
   if (!fit.report.admissible)
-    std::printf("\n  Where other tests of this actuator end alike, the model lacks something: sealwatch explain\n");
+    std::printf("\n  If other tests also end like this, the model lacks something: run sealwatch explain.\n");
 }
 
 std::optional<FitResult> fit_as_asked(const FitOptions& options, const AssetConfig& asset,

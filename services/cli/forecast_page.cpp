@@ -186,7 +186,8 @@ std::string methods_note(const ForecastPanel::Answer& answer) {
            {"state_space", "state space: the law of ageing, followed through all tests"},
            {"fleet", "fleet: the same, assuming that it belongs to a known population"},
            {"ols",
-            "ols: a straight line through the tests of the last so many months; ageing is curved, so its interval is "
+            "ols: a straight line through the tests of as many months as its name says; ageing is curved, so its "
+            "interval is "
             "too narrow"},
            {"ols_drift", "ols drift: the same line, with a slope that may change"},
            {"ols_log_time", "ols log time: a straight line over the logarithm of time"},

@@ -23,7 +23,7 @@ std::vector<std::string> laws_at(const Site& site) {
 std::vector<std::string> laws_at(const equations::TextSite& site, const std::vector<Law>& own) {
   std::vector<std::string> ids;
   const auto add = [&](const Law& law) {
-    if (!law.closed_form && fits(law, site.site()) && (!law.plant.empty() || !equations::is_inert(law, site)))
+    if (!law.closed_form && fits(law, site.site()) && (!law.plant.empty() || !equations::is_inert(law, site.site())))
       add_id(ids, law);
   };
   for (const Law& law : all_laws())

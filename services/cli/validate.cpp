@@ -85,9 +85,9 @@ int run_validate(const ValidateOptions& options) {
                 .place = option,
                 .value = {},
                 .rule = "is required",
-                .advice =
-                    "a model needs an asset file and a directory for its report; a trace of your own simulation only "
-                    "--simulated SIM.csv"});
+                .advice = "give --asset FILE and --out DIR (for the report), or --simulated SIM.csv to compare a trace "
+                          "of your own "
+                          "simulation"});
       return kBadInput;
     }
   const std::optional<AssetConfig> asset = load_asset_of_known_plant(options.asset_file, options.map_file);

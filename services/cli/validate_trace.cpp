@@ -38,18 +38,18 @@ void print_channel(const trace::ChannelComparison& channel) {
   std::printf("\n  %s: %s (p %s)\n", text::in_words(channel.name).c_str(),
               channel.differs ? "differs beyond noise" : "no difference beyond noise",
               text::p_value_text(channel.p_value).c_str());
-  std::printf("    difference %s rms, noise %s, %s effective samples of %zu; NRMSE %s\n",
-              text::readable(channel.rms, channel.unit).c_str(),
-              text::readable(channel.noise_std, channel.unit).c_str(),
-              text::number_text(channel.effective_samples).c_str(), channel.recorded.size(),
-              text::percent(channel.nrmse_percent / 100.0, 2).c_str());
+  std::printf(
+      "    difference %s rms, of which nothing that was tried explains %s; %s effective samples of %zu; NRMSE %s\n",
+      text::readable(channel.rms, channel.unit).c_str(), text::readable(channel.noise_std, channel.unit).c_str(),
+      text::number_text(channel.effective_samples).c_str(), channel.recorded.size(),
+      text::percent(channel.nrmse_percent / 100.0, 2).c_str());
   if (!channel.differs) return;
-  std::printf("    seen in: %s\n", wrapped(text::separated(channel.by), kWidth, 4).c_str());
+  std::printf("    shows as: %s\n", wrapped(text::separated(channel.by), kWidth, 4).c_str());
   for (const trace::MisfitInterval& interval : channel.intervals)
-    std::printf("    %6s of it from %s to %s s\n", text::percent_text(interval.misfit_share).c_str(),
+    std::printf("    %6s of its square between %s and %s s\n", text::percent_text(interval.misfit_share).c_str(),
                 number(interval.begin_s).c_str(), number(interval.end_s).c_str());
   for (const trace::RegimeMisfit& regime : channel.regimes)
-    std::printf("    %6s of it %s (%s of the time), %s rms\n", text::percent_text(regime.misfit_share).c_str(),
+    std::printf("    %6s of its square %s (%s of the time), %s rms\n", text::percent_text(regime.misfit_share).c_str(),
                 regime.name.c_str(), text::percent_text(regime.time_share).c_str(),
                 text::readable(regime.rms, channel.unit).c_str());
   if (channel.alterations.empty()) return;

@@ -61,13 +61,15 @@ std::string partial_stroke(const Recording& recording) {
   Canvas canvas("One partial stroke test with its phases", kWide, 3 * kHeight);
   double y = 0.0;
   const auto add = [&](const std::string& title, const std::string& unit, const std::vector<double>& values) {
-    const bool first = y == 0.0;
+    const bool first = y == 0.0, second = y == kHeight;
     Plot plot = over_time(title, unit, kWide, kHeight);
     if (first) plot.y.range = {0.042, 0.066};  // room for the names above the curve
     for (const signal::MotionPhase& phase : test.phases()) {
-      const bool named = first && phase.kind != MotionKind::breakaway;  // too short for its name beside the next
-      plot.marks.emplace_back(report::Reference{
-          .at = phase.begin_s, .vertical = true, .label = named ? name_of(phase.kind) : std::string()});
+      const bool named = first != (phase.kind == MotionKind::breakaway);  // too short for its name beside the next
+      plot.marks.emplace_back(
+          report::Reference{.at = phase.begin_s,
+                            .vertical = true,
+                            .label = named && (first || second) ? name_of(phase.kind) : std::string()});
     }
     plot.marks.emplace_back(line_of(samples, values, Ink::first));
     canvas.place(report::to_svg(plot), 0.0, y);

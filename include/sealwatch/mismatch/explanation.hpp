@@ -2,6 +2,7 @@
 // the topic `model_discrepancy` are made from. docs/mismatch.md says how each figure comes about.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -148,6 +149,14 @@ struct Location {
 /// Pooled over recordings: the json's fit.fit and fit.holdout.
 struct PooledFit {
   std::vector<ChannelComparison> channels;
+
+  /// Channel that the model after misses most, by samples that count, where that is three times its noise or more; null:
+  /// none.
+  [[nodiscard]] const ChannelComparison* missed() const {
+    constexpr double kNearly = 3.0;
+    const auto most = std::ranges::max_element(channels, {}, &ChannelComparison::weighed_rms_after);
+    return most == channels.end() || most->weighed_rms_after < kNearly ? nullptr : &*most;
+  }
 };
 
 /// A model that was fitted on the way, in the order of the search.

@@ -62,6 +62,7 @@ struct Site {
   Feeds feeds = Feeds::anything;  ///< of a command's voltage
   std::string_view unit = {};     ///< of a site of kind own
   std::array<SiteSignal, kSiteSignals> signals = {};
+  std::array<bool, kSiteSignals> absent = {};  ///< signals of its kind that the plant does not give: 0
 };
 
 }  // namespace sealwatch

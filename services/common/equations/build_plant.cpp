@@ -200,9 +200,8 @@ class Builder {
     }
     if (!missing.empty())
       faults_("law_sizes", fault(missing, "is missing: units of laws that fit the plant's sites",
-                                 "divide what is usual here by what is on the actuator of the catalogue, where 1 "
-                                 "stands for " +
-                                     there + "; 'sealwatch plant check' then shows what laws become"));
+                                 "divide your machine's usual value by that of the catalogue's actuator, which is " +
+                                     there + "; 'sealwatch plant check' then shows the sizes of the laws"));
     for (std::size_t k = 0; k < text_.states.size(); ++k)
       if (!(scale_of(k) > 0.0))
         faults_("states." + text_.states[k].description.name,

@@ -248,10 +248,11 @@ class Reader {
     if (name == "root" && count == 2)
       return Formula{e_.divide(a, root(e_.add(e_.apply(Operation::magnitude, a), w))), raised(*unit, 0.5), any};
     const bool jump = name == "sign" || name == "step" || name == "root";
-    return arguments(syntax, name == "hypot" ? "two arguments"
-                             : jump          ? "two arguments, the second is the width over which it is rounded"
-                             : name == "abs" ? "one argument, and a width where its corner is to be rounded"
-                                             : "two arguments, and a width where its corner is to be rounded");
+    return arguments(
+        syntax, name == "hypot" ? "two arguments"
+                : jump ? "two arguments, the second being the width over which it is rounded, as in sign(v, 1e-4[m/s])"
+                : name == "abs" ? "one argument, and a width where its corner is to be rounded"
+                                : "two arguments, and a width where its corner is to be rounded");
   }
 
   Expressions& e_;

@@ -197,32 +197,11 @@ std::optional<Law> build_law(const TextLaw& text, const TextPlant& plant, const 
   return sound ? std::optional(std::move(law)) : std::nullopt;
 }
 
-// What is left of a law without the signals that it needs is the rounding of its corners.
-bool is_inert(const Law& law, const TextSite& site) {
-  constexpr double kRounding = 0.01;
-  const SiteNames& names = names_of_site(site.kind);
-  std::array<double, kSiteSignals> seen{}, all{};
-  for (std::size_t k = 0; k < kSiteSignals; ++k) {
-    all[k] = names.signals[k].usual;
-    if (std::ranges::find(site.signals, names.signals[k].name, &TextSignal::name) != site.signals.end())
-      seen[k] = all[k];
-  }
-  std::vector<double> parameters;
-  for (const LawParameter& parameter : law.parameters) parameters.push_back(parameter.start.front());
-  const double hidden = law.hidden ? law.hidden->scale : 0.0;
-  const LawOutput here = law.evaluate(law_input(seen, hidden, parameters, roundings_of(law)));
-  const LawOutput usual = law.evaluate(law_input(all, hidden, parameters, roundings_of(law)));
-  const auto less = [](const LawScalar& a, const LawScalar& b) {
-    return std::abs(a.value) <= kRounding * std::abs(b.value);
-  };
-  return less(here.contribution, usual.contribution) && less(here.rate, usual.rate);
-}
-
 std::vector<NeededSize> needed_sizes(const TextPlant& plant) {
   std::map<std::string_view, NeededSize> sizes;
   for (const TextSite& site : plant.sites)
     for (const Law& law : all_laws()) {
-      if (!law.plant.empty() || !fits(law, site.site()) || is_inert(law, site)) continue;
+      if (!law.plant.empty() || !fits(law, site.site()) || is_inert(law, site.site())) continue;
       for (const LawParameter& parameter : law.parameters) {
         if (parameter.unit == "1") continue;
         NeededSize& size = sizes[parameter.unit];

@@ -25,9 +25,6 @@ struct LawExpressions {
 
 namespace sealwatch::equations {
 
-/// Whether a law of the catalogue gives nothing at a site with these signals.
-[[nodiscard]] bool is_inert(const Law& law, const TextSite& site);
-
 /// A unit for which `law_sizes` has to give a size, and what has it in the catalogue.
 struct NeededSize {
   std::string unit;

@@ -1,5 +1,13 @@
 #include "services/common/equations/site_table.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "sealwatch/model/law_sizes.hpp"
+
 namespace sealwatch::equations {
 namespace {
 
@@ -61,6 +69,26 @@ const SiteNames& names_of_site(SiteKind kind) {
     default:
       return kOwn;
   }
+}
+
+bool is_inert(const Law& law, const Site& site) {
+  if (std::ranges::none_of(site.absent, std::identity{})) return false;
+  constexpr double kRounding = 0.01;
+  const SiteNames& names = names_of_site(site.kind);
+  std::array<double, kSiteSignals> seen{}, all{};
+  for (std::size_t k = 0; k < kSiteSignals; ++k) {
+    all[k] = names.signals[k].usual;
+    if (!site.absent[k]) seen[k] = all[k];
+  }
+  std::vector<double> parameters;
+  for (const LawParameter& parameter : law.parameters) parameters.push_back(parameter.start.front());
+  const double hidden = law.hidden ? law.hidden->scale : 0.0;
+  const LawOutput here = law.evaluate(law_input(seen, hidden, parameters, roundings_of(law)));
+  const LawOutput usual = law.evaluate(law_input(all, hidden, parameters, roundings_of(law)));
+  const auto less = [](const LawScalar& a, const LawScalar& b) {
+    return std::abs(a.value) <= kRounding * std::abs(b.value);
+  };
+  return less(here.contribution, usual.contribution) && less(here.rate, usual.rate);
 }
 
 }  // namespace sealwatch::equations

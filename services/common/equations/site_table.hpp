@@ -5,6 +5,7 @@
 #include <array>
 #include <string_view>
 
+#include "sealwatch/model/physics.hpp"
 #include "sealwatch/model/sites.hpp"
 
 namespace sealwatch::equations {
@@ -21,5 +22,8 @@ struct SiteNames {
 };
 
 [[nodiscard]] const SiteNames& names_of_site(SiteKind kind);
+
+/// Whether a law of the catalogue lacks the signals that it needs there: what is left of it is the rounding of its corners.
+[[nodiscard]] bool is_inert(const Law& law, const Site& site);
 
 }  // namespace sealwatch::equations

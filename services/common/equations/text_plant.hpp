@@ -13,6 +13,7 @@
 #include "sealwatch/model/physics.hpp"
 #include "sealwatch/model/runtime_equations.hpp"
 #include "services/common/equations/formula.hpp"
+#include "services/common/equations/site_table.hpp"
 
 namespace sealwatch::equations {
 
@@ -53,7 +54,12 @@ struct TextSite {
   std::string key;                                           ///< where it stands: "elements.piston.sites[0]"
   [[nodiscard]] Site site() const {
     Site site{kept(element), kind, feeds};
-    if (kind != SiteKind::own) return site;
+    if (kind != SiteKind::own) {
+      for (std::size_t k = 0; k < kSiteSignals; ++k)
+        site.absent[k] =
+            std::ranges::find(signals, names_of_site(kind).signals[k].name, &TextSignal::name) == signals.end();
+      return site;
+    }
     site.unit = kept(unit);
     for (std::size_t k = 0; k < std::min(signals.size(), kSiteSignals); ++k)
       site.signals[k] = {kept(signals[k].name), kept(signals[k].unit)};

@@ -195,6 +195,9 @@ class Analysis {
   /// The model that the laws are beside: with the values that are off, where they were found beside such.
   [[nodiscard]] const FittedModel& without_laws() const { return beside_ ? *naming_.baseline : *baseline_; }
   [[nodiscard]] double share_explained_by(const FittedModel& model) const;
+  /// The same of held-out recordings' free runs, where a gross misfit stays: a law that bends to the fitted ones alone
+  /// takes less there. 1 where other things than laws decide these runs.
+  [[nodiscard]] double share_held_out() const;
   [[nodiscard]] double explained_share() const { return share_explained_by(*best_.model); }
   [[nodiscard]] bool explains() const;
   // Laws that fit better and explain too little say where to look; a name for it they are not.
@@ -227,6 +230,7 @@ class Analysis {
   Trial tried_;                    ///< what was taken back, as it explains too little
   bool proven_ = false;
   bool all_compared_ = true;                               ///< the models can be simulated on every recording
+  std::vector<std::string> not_compared_;                  ///< recordings on which a model cannot be simulated, and why
   bool none_compared_ = false;                             ///< of the held-out recordings
   bool input_swings_ = false;                              ///< between its samples, through much of the tests
   std::optional<WhyNone> why_none_;                        ///< set: no law is named

@@ -36,9 +36,10 @@ void Analysis::prove() {
 void Analysis::note_not_compared(const BlockGains& blocks) {
   all_compared_ = all_compared_ && blocks.not_compared.empty();
   for (const std::string& one : blocks.not_compared)
-    if (const std::string note = "Not compared, as a model cannot be simulated there: " + one + ".";
-        std::ranges::find(result_.notes, note) == result_.notes.end())
+    if (const std::string note = not_compared(one); std::ranges::find(result_.notes, note) == result_.notes.end()) {
       result_.notes.push_back(note);
+      not_compared_.push_back(one);
+    }
 }
 
 void Analysis::describe_what_was_found() {
@@ -203,6 +204,11 @@ void Analysis::put_in_words() {
                                   best_.model->misfit / best_.model->residuals);
   result_.next_test = next_test_of(result_);
   result_.summary = summary_of(result_);
+  if (!not_compared_.empty() && result_.verdict == Verdict::undetermined && !why_none_)
+    result_.summary = result_.statistically_significant ? result_.summary + " " + not_compared(joined(not_compared_))
+                                                        : "The recordings that could be compared show no difference "
+                                                          "beyond the noise. " +
+                                                              not_compared(joined(not_compared_));
   say_what_else_is_known();
   if (const std::string moved = values_at_their_end(*best_.model, asset_); !moved.empty()) {
     result_.notes.push_back(moved);
@@ -232,7 +238,8 @@ void Analysis::say_what_was_cut(Explanation& result) const {
   limit_probabilities(result);
   const std::string more = more_time_than(options_.time_limit_s);
   if (result.next_test.starts_with(more)) return;
-  result.summary = "The time limit ended the search: not everything was tried. " + result.summary;
+  const std::string cut = "The time limit ended the search: not everything was tried.";
+  result.summary = result.verdict == Verdict::undetermined ? cut + " " + result.summary : result.summary + " " + cut;
   const bool alone = result.verdict == Verdict::undetermined || result.next_test.empty();
   result.next_test = alone ? more + "." : more + ". Then: " + result.next_test;
 }
@@ -304,11 +311,25 @@ bool Analysis::explains() const {
   return mismatch::explains({.any = !best_.effects.empty(),
                              .proven = proven_,
                              .leave_nothing = leaves_nothing(),
-                             .share = explained_share(),
+                             .share = std::min(explained_share(), share_held_out()),
                              .leave_what_is_within = !asks_within(plant()) && excess(*best_.model) > kGross,
                              .as_searched = naming_.best.effects.size() == best_.effects.size(),
                              .p_before = beside_ ? naming_.first.p_value : result_.p_value,
-                             .p_after = naming_.last.p_value});
+                             // What is missed grossly is seen without a law, before and after.
+                             .p_after = largest_excess(*best_.model) > kGross ? kSmallestP : naming_.last.p_value});
+}
+
+double Analysis::share_held_out() const {
+  const bool is_measure_of_laws = !windowed() && fit_.weight.empty() && fit_.own_parameter.empty();
+  if (!is_measure_of_laws || excess(*best_.model) <= kGross) return 1.0;
+  double before = 0.0, after = 0.0, count = 0.0;
+  for (const ChannelComparison& channel : result_.holdout.channels) {
+    if (!std::isfinite(channel.rms_before) || !std::isfinite(channel.rms_after)) continue;
+    before += channel.rms_before * channel.rms_before;
+    after += channel.rms_after * channel.rms_after;
+    ++count;
+  }
+  return count == 0.0 ? 1.0 : share_explained(before / count, after / count);
 }
 
 bool Analysis::takes_back_what_does_not_explain() {

@@ -226,7 +226,7 @@ std::vector<KnownValue> Analysis::unknown_sensors() const {
 }
 
 bool Analysis::look_beside_what_differs(const Naming& found, const ExplainOptions& options) {
-  tell("looking again, with a " + found.differs_in + " for each test", 0.5);
+  tell("repeating the search with one " + found.differs_in + " for each test", 0.5);
   auto own = each_its_own(found.differs_in, fit_, *baseline_, options.threads);
   if (!own) return false;
   own->fit.may_differ.clear();

@@ -63,11 +63,9 @@ class BaselineFit {
     if (!model) return fail(model.error());
     if (!time_.deadline().passed()) model = with_tolerances(std::move(*model));
     if (!time_.deadline().passed()) model = with_colour_of_residuals(std::move(*model), channels);
-    if (!model) return fail(model.error());
     if (!time_.deadline().passed()) model = beyond_usual_ranges(std::move(*model), prepared(fit_), options_.threads);
     std::ranges::move(wider_ranges_in_words(model->asset), std::back_inserter(baseline_.notes));
     if (!windowed() && !time_.deadline().passed()) model = weighed_by_what_is_recorded(std::move(*model));
-    if (!model) return fail(model.error());
     baseline_.model = std::make_shared<const FittedModel>(std::move(*model));
     return std::move(baseline_);
   }
@@ -84,11 +82,17 @@ class BaselineFit {
   }
 
   // Fitted again where its residuals refute the colour of the noise.
-  Result<FittedModel> with_colour_of_residuals(FittedModel model, const std::vector<std::string>& channels) {
+  FittedModel with_colour_of_residuals(FittedModel model, const std::vector<std::string>& channels) {
+    const std::vector<NoiseColour> before = fit_.colour;
     if (!take_colour_of_residuals(model, fit_)) return model;
+    Result<FittedModel> again = fit_model(model.asset, prepared(fit_), &model, options_.threads);
+    if (!again) {  // time is up
+      fit_.colour = before;
+      return model;
+    }
     baseline_.notes = colours_in_words(fit_, channels);
     holdout_.colour.assign(holdout_.samples.size(), fit_.colour.front());
-    return fit_model(model.asset, prepared(fit_), &model, options_.threads);
+    return std::move(*again);
   }
 
   // Far off, the model's error decides, and some of the windows show it as well as all.
@@ -122,7 +126,7 @@ class BaselineFit {
   }
 
   // Fitted again with less weight where the input's course between its samples decides.
-  Result<FittedModel> weighed_by_what_is_recorded(FittedModel model) {
+  FittedModel weighed_by_what_is_recorded(FittedModel model) {
     if (!holdout_.samples.empty())
       if (const auto held_out = fit_model(with_fixed_parameters(model.asset), holdout_, nullptr, options_.threads))
         holdout_.weight = unrecorded_input(*held_out, holdout_).weight;
@@ -132,13 +136,18 @@ class BaselineFit {
     baseline_.input_swings = unrecorded.resolution > 0.0;
     if (fit_.weight.empty()) return model;
     Result<FittedModel> again = fit_model(model.asset, fit_, &model, options_.threads);
-    if (std::string note = again ? unrecorded_input_in_words(*again) : ""; !note.empty()) {
+    if (!again) {  // time is up
+      fit_.weight.clear();
+      holdout_.weight.clear();
+      return model;
+    }
+    if (std::string note = unrecorded_input_in_words(*again); !note.empty()) {
       if (unrecorded.resolution > 0.0)
         note += " That may feign laws: below " + number(100.0 * unrecorded.resolution) +
                 " % of a size that matters none is asked for.";
       baseline_.notes.push_back(std::move(note));
     }
-    return again;
+    return std::move(*again);
   }
 
   [[nodiscard]] bool windowed() const { return baseline_.window_s > 0.0; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sealwatch/model/law_sizes.hpp"
+#include "services/common/equations/site_table.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -59,7 +60,7 @@ void add_at_sites(const Law& law, const PlantSimulation& simulation, const std::
   std::vector<Candidate> found;
   for (std::size_t k = 0; k < simulation.sites().size(); ++k) {
     const Site& site = simulation.sites()[k];
-    if (!fits(law, site)) continue;
+    if (!fits(law, site) || (law.plant.empty() && equations::is_inert(law, site))) continue;
     if (!found.empty() && found.back().element == site.element) {
       found.back().sites.push_back(k);
       continue;

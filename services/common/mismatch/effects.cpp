@@ -452,7 +452,7 @@ PrognosisShift prognosis_shift(const AssetConfig& asset, const std::vector<Param
   const std::string not_before = months == months_before ? ", as before" : ", not " + number(months_before);
   shift.sentence = of_what + " is " + condition + " instead of " + number(100.0 * shift.theta_before, 4) + " %";
   if (of_population)
-    shift.sentence += ": a mean " + shift.part + " then has " + number(months) + " months left until " +
+    shift.sentence += "; an average " + shift.part + " then has " + number(months) + " months left until " +
                       number(100.0 * asset.condition->threshold) + " %" + not_before;
   shift.sentence += ". This asset's own remaining life comes from its history (sealwatch forecast).";
   return shift;

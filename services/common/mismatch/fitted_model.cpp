@@ -149,7 +149,11 @@ Result<PemProblem> problem_of(const AssetConfig& asset, const Data& data, const 
     if (data.start_as_measured)
       std::erase_if(recording.own, [](const Unknown& unknown) { return unknown.name.starts_with("initial:"); });
   }
-  problem->simulation_options = simulation_options(data.samples, options);
+  // No value can go astray where none is searched: only a plant that is fast between samples takes so many steps.
+  constexpr double kMoreSteps = 10.0;
+  ActuatorFitOptions as_asked = options;
+  if (problem->shared.empty()) as_asked.steps_per_sample *= kMoreSteps;
+  problem->simulation_options = simulation_options(data.samples, as_asked);
   problem->simulation_options.relative_tolerance = from != nullptr && from->residuals > 0.0
                                                        ? tolerance_at(excess(*from), data.held_within_s)
                                                        : data.relative_tolerance;

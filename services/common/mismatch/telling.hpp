@@ -19,10 +19,14 @@ using text::joined;
 inline constexpr double kNeverCertain = 0.999;
 
 [[nodiscard]] std::string element_in_words(const std::string& element);
-/// "coulomb friction at the piston"
+/// "Coulomb friction at the piston"
 [[nodiscard]] std::string law_in_words(const LawAt& law);
 /// What broke which rule where, without file and advice: for a remark within a sentence.
 [[nodiscard]] std::string reason_in_words(const Error& error);
+/// `recordings`: each with the reason.
+[[nodiscard]] inline std::string not_compared(const std::string& recordings) {
+  return "Not compared, as a model cannot be simulated there: " + recordings + ".";
+}
 /// "the misfit of flow on recordings that took no part falls from 5 to 1.01 times the noise", where it falls most; ""
 /// without any channel.
 [[nodiscard]] std::string proof_in_words(const PooledFit& holdout);

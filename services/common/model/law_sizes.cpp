@@ -32,8 +32,8 @@ LawBounds law_bounds(const PlantDescription& plant, const LawParameter& paramete
   // the rest of what it does to laws that are not there. What has no unit (a gain, a share, a clock's rate) has the same
   // bounds everywhere.
   constexpr double kRoom = 100.0;
-  const bool guessed = parameter.strength && !parameter.own_size && is_of_a_file(plant) &&
-                       find_size(plant, parameter.unit) != nullptr;
+  const bool guessed =
+      parameter.strength && !parameter.own_size && is_of_a_file(plant) && find_size(plant, parameter.unit) != nullptr;
   const double size = law_size(plant, parameter) * (guessed ? kRoom : 1.0);
   const double least = parameter.place && is_of_a_file(plant) ? -parameter.max : parameter.min;
   return {size * least, size * parameter.max};

@@ -15,6 +15,7 @@
 #include "services/common/recording/csv_rows.hpp"
 #include "services/common/recording/log_columns.hpp"
 #include "services/common/recording/thousands.hpp"
+#include "services/common/text/words.hpp"
 #include "services/common/units/unit_conversion.hpp"
 
 namespace sealwatch {
@@ -182,6 +183,22 @@ DecimalSign decimal_sign_of(const Reading& reading) {
   for (std::size_t k = 0; k < reading.width; ++k)
     if (has_whole[k] && has_either[k]) return DecimalSign::doubtful;
   return DecimalSign::likely;
+}
+
+// What the map says of delimiter and decimal sign may be what is wrong.
+std::string advice_on_layout(std::string_view head, const LogLayout& given) {
+  LogLayout free = given;
+  free.delimiter.clear();
+  free.decimal.clear();
+  const auto other = given == free ? std::nullopt : best_reading(head, free, Expected::mostly_values);
+  if (!other) return "say how the log is written, under log: delimiter, decimal, header_row";
+  std::string says;
+  if (!given.delimiter.empty()) says = "delimiter: " + given.delimiter;
+  if (!given.decimal.empty()) text::add_to_list(says, "decimal: " + given.decimal);
+  const auto name = std::ranges::find(kDelimiters, other->delimiter, &std::pair<const char*, char>::second);
+  return "log: says " + says +
+         "; the file reads with delimiter: " + (name == kDelimiters.end() ? "blank" : name->first) +
+         ", decimal: " + (other->form.decimal == ',' ? "comma" : "point");
 }
 
 std::string without_brackets(std::string_view text) {
@@ -442,7 +459,7 @@ Result<FoundLayout> find_layout(std::string_view head, const LogLayout& given) {
   if (!reading)
     return fail(error_at("row 1, column 1", head.substr(0, head.find('\n')),
                          "no table of numbers follows within " + std::to_string(kRowsLookedAt) + " rows",
-                         "say how the log is written, under log: delimiter, decimal, header_row"));
+                         advice_on_layout(head, given)));
   FoundLayout out{.delimiter = reading->delimiter, .decimal = reading->form.decimal, .header = {}, .units = {}};
   out.decimal_sign = given.decimal.empty() ? decimal_sign_of(*reading) : DecimalSign::known;
   out.first_row = static_cast<std::size_t>(given.first_row);

@@ -25,10 +25,12 @@ VerdictWords words_of(const Explanation& explanation) {
     case Verdict::consistent:
       return {"good", "Consistent: no mismatch was found"};
     case Verdict::mismatch:
-      return {"bad", explanation.asset_values.empty() ? "Mismatch found and explained"
-                     : explanation.values_beside_effects()
-                         ? "Mismatch found and explained: missing physics and a wrong value in the asset file"
-                         : "Mismatch found and explained: missing physics, or a wrong value in the asset file"};
+      return {"bad", std::string("Mismatch found and ")
+                         .append(explanation.holdout.missed() == nullptr ? "explained" : "partly explained")
+                         .append(explanation.asset_values.empty() ? ""
+                                 : explanation.values_beside_effects()
+                                     ? ": missing physics and a wrong value in the asset file"
+                                     : ": missing physics, or a wrong value in the asset file")};
     case Verdict::undetermined:
       if (!explanation.asset_values.empty()) return {"warn", "Undetermined: a value of the asset file may be wrong"};
       return {"warn", explanation.statistically_significant ? "Undetermined: a mismatch without an explanation"
@@ -54,12 +56,12 @@ std::string step_for(const mismatch::FoundEffect& effect, const std::string& wor
   if (!effect.what.meaning.empty()) step += ": " + effect.what.meaning;
   step += ". ";
   if (effect.engineering_share >= 1.0)
-    step += "At " + text::number_text(effect.engineering_share, 2) + " times the size that matters, do this " +
+    step += "It is " + text::number_text(effect.engineering_share, 2) + " times the size that matters: do this " +
             (worn_part.empty() ? "soon" : "before you rely on the condition of the " + worn_part) +
             ". If the effect is normal for this asset, keep it in the asset file.";
   else if (effect.engineering_share > 0.0)
-    step += "At " + text::number_text(effect.engineering_share, 2) +
-            " of the size that matters, it can wait for the next planned work. Follow it in the next tests.";
+    step += "It is " + text::number_text(effect.engineering_share, 2) +
+            " of the size that matters: it can wait for the next planned work. Follow it in the next tests.";
   else
     step += "It is either normal for this asset or a fault.";
   std::vector<std::string> others;
@@ -68,15 +70,32 @@ std::string step_for(const mismatch::FoundEffect& effect, const std::string& wor
   return step;
 }
 
+// What was found is not all: another law, perhaps none of the catalogue, takes part in what it takes.
+std::string step_for_the_rest(const Explanation& explanation, const mismatch::ChannelComparison& missed) {
+  std::string step = "Find the rest before you use asset.explained.yaml: " + text::in_words(missed.channel) +
+                     " still misses by " + text::number_text(missed.rms_after, 3) +
+                     " times its noise, and the cause may be another one.";
+  if (!explanation.rejected.empty() &&
+      explanation.rejected.front().share > explanation.rejected.front().allowed_share) {
+    const mismatch::Rejected& better = explanation.rejected.front();
+    step += " Look at " + the_element(better.what.element) + " first: " + law_name(better.what) +
+            " would take more there, with a value that physics forbids.";
+  }
+  return step + " A law that the catalogue does not have can be written in the plant's file, under laws.";
+}
+
 // Once the physics is known: look there, calculate with it, settle what is open.
 std::vector<std::string> steps_after(const Explanation& explanation) {
   std::vector<std::string> steps;
   const std::optional<ConditionSetting>& wear = explanation.explained.condition;
   const std::string worn_part = wear ? wear->part : "";
   for (const mismatch::FoundEffect& effect : explanation.effects) steps.push_back(step_for(effect, worn_part));
-  steps.emplace_back(
-      "Use asset.explained.yaml instead of the asset file in fit, forecast, simulate and explain. For the services, "
-      "put it in place of the asset file.");
+  if (const mismatch::ChannelComparison* missed = explanation.holdout.missed())
+    steps.push_back(step_for_the_rest(explanation, *missed));
+  else
+    steps.emplace_back(
+        "Use asset.explained.yaml instead of the asset file in fit, forecast, simulate and explain. For the services, "
+        "put it in place of the asset file.");
   if (!explanation.next_test.empty()) steps.push_back(explanation.next_test);
   return steps;
 }
@@ -167,10 +186,10 @@ std::string banner(const Explanation& explanation) {
 std::vector<std::string> steps_of(const Explanation& explanation) {
   if (explanation.verdict == Verdict::mismatch) return steps_after(explanation);
   if (explanation.verdict == Verdict::consistent)
-    return {"No repair is needed. " +
-            (explanation.next_test.empty()
-                 ? "Compare each new test with this model: sealwatch validate --asset asset.explained.yaml TEST.csv"
-                 : explanation.next_test)};
+    return {"No repair is needed. " + (explanation.next_test.empty()
+                                           ? "Compare each new test with this model: sealwatch validate --asset "
+                                             "asset.explained.yaml --out DIR TEST.csv"
+                                           : explanation.next_test)};
   if (explanation.next_test.empty()) return {};
   return {explanation.next_test};
 }

@@ -8,7 +8,7 @@
 
 namespace sealwatch::report {
 
-/// "piston, stribeck friction", with the form where the law has several.
+/// "piston, Stribeck friction", with the form where the law has several.
 [[nodiscard]] std::string law_name(const mismatch::LawAt& what);
 
 /// "4.010 ± 0.060 kN", and that it ended at a bound or that the recordings do not tell it: "0.48 rpm, at its bound".

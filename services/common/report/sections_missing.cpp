@@ -40,7 +40,7 @@ Plot over_time(const MissingTerm& term) {
             .x = {.label = "time", .unit = "s"},
             .y = {.unit = term.unit},
             .height = 240};
-  Band band{.x = term.time_s, .ink = Ink::first, .label = "band"};
+  Band band{.x = term.time_s, .ink = Ink::muted, .label = "band"};
   const std::size_t size = std::min(term.demanded.size(), term.band.size());
   for (std::size_t k = 0; k < size; ++k) {
     band.low.push_back(term.demanded[k] - term.band[k]);
@@ -48,9 +48,9 @@ Plot over_time(const MissingTerm& term) {
   }
   plot.marks.emplace_back(Reference{.at = 0.0});
   if (size > 0) plot.marks.emplace_back(std::move(band));
-  plot.marks.emplace_back(Line{.x = term.time_s, .y = term.demanded, .ink = Ink::first, .label = "required by data"});
+  plot.marks.emplace_back(Line{.x = term.time_s, .y = term.demanded, .ink = Ink::muted, .label = "required by data"});
   if (has_law(term))
-    plot.marks.emplace_back(Line{.x = term.time_s, .y = term.law, .ink = Ink::second, .label = "law", .width = 1.8});
+    plot.marks.emplace_back(Line{.x = term.time_s, .y = term.law, .ink = Ink::first, .label = "law", .width = 1.8});
   return plot;
 }
 
@@ -85,9 +85,9 @@ void add_law(const MissingTerm& term, const Bins& bins, Plot& plot) {
   }
   const auto [least, most] = std::minmax_element(term.law.begin(), term.law.end());
   double apart = 0.0;
-  Line up{.ink = Ink::second, .width = 1.8};
-  Line down{.ink = Ink::second, .width = 1.8, .dashed = true};
-  Line both{.ink = Ink::second, .label = "law", .width = 1.8};
+  Line up{.ink = Ink::first, .width = 1.8};
+  Line down{.ink = Ink::first, .width = 1.8, .dashed = true};
+  Line both{.ink = Ink::first, .label = "law", .width = 1.8};
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     const double total = rising.count[bin] + falling.count[bin];
     if (total == 0.0) continue;
@@ -115,7 +115,7 @@ Band demanded_band(const MissingTerm& term) {
     if (std::isfinite(term.state_value[k] + term.demanded[k] + term.band[k])) order.push_back(k);
   std::ranges::stable_sort(order, {}, [&](std::size_t k) { return term.state_value[k]; });
   const std::size_t groups = std::clamp<std::size_t>(order.size() / kLeastPoints, 1, kBandGroups);
-  Band band{.ink = Ink::first, .label = "band"};
+  Band band{.ink = Ink::muted, .label = "band"};
   for (std::size_t group = 0; group < groups; ++group) {
     const std::size_t begin = group * order.size() / groups, end = (group + 1) * order.size() / groups;
     double state = 0.0, sum = 0.0, squares = 0.0, errors = 0.0;
@@ -140,7 +140,7 @@ Plot over_state(const MissingTerm& term) {
             .x = {.label = term.state, .unit = term.state_unit},
             .y = {.unit = term.unit},
             .height = 240};
-  Scatter dots{.ink = Ink::first, .label = "required by data"};
+  Scatter dots{.ink = Ink::muted, .label = "required by data"};
   const std::size_t size = std::min(term.state_value.size(), term.demanded.size());
   const std::size_t step = size / kMostDots + 1;
   for (std::size_t k = 0; k < size; k += step) {

@@ -17,6 +17,9 @@ std::string in_words(std::string_view identifier) {
   }
   if (identifier.ends_with("_a") || identifier.ends_with("_b"))  // "pressure A", "chamber B"
     text.back() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.back())));
+  for (const std::string_view surname : {"coulomb", "stribeck"})
+    if (const std::size_t at = text.find(surname); at != std::string::npos)
+      text[at] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[at])));
   return text;
 }
 

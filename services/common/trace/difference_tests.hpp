@@ -22,7 +22,7 @@
 namespace sealwatch::trace {
 
 struct RegressorGroup {
-  std::string name;  ///< in words: "shift, scale and delay"
+  std::string name;  ///< in words: "an offset, gain, delay or clock rate"
   std::vector<Eigen::VectorXd> columns;
 };
 

@@ -59,27 +59,30 @@ std::vector<RegressorGroup> FaultRegressors::groups_of(const std::string& channe
   VectorXd t(n);
   for (Index k = 0; k < n; ++k) t(k) = 2.0 * (time_s_[static_cast<std::size_t>(k)] - begin_s) / length_s - 1.0;
   const auto within = [&range](const VectorXd& column) -> VectorXd { return column.segment(range.first, range.count); };
-  RegressorGroup shifts{"shift, scale, delay and clock", {within(s), within(v), within(t.cwiseProduct(v))}};
-  RegressorGroup regimes{"motion and level", {}};
+  RegressorGroup shifts{"an offset, gain, delay or clock rate", {within(s), within(v), within(t.cwiseProduct(v))}};
+  RegressorGroup regimes{"a mean that differs with motion or level", {}};
   for (const Regime& regime : motion_.empty() ? regimes_of(v) : motion_)
     regimes.columns.push_back(within(regime.indicator));
   for (const Regime& level : levels_of(s)) regimes.columns.push_back(within(level.indicator));
   for (const VectorXd& saturated : motion_.empty() ? saturations_of(v) : saturations_)
     regimes.columns.push_back(within(saturated));
-  RegressorGroup shapes{"curvature and drive",
+  RegressorGroup shapes{"the curvature of the channel or the course of another one",
                         {within(a), within(s.cwiseProduct(s)), within(v.cwiseProduct(v.cwiseAbs()))}};
   for (const Drive& drive : drives_)
     if (drive.name != channel)
       shapes.columns.push_back(within(drive.values)), shapes.columns.push_back(within(drive.slope));
   const Index pieces = std::clamp<Index>(range.count / kSamplesAPiece, 1, kMostPieces);
-  return {std::move(shifts), std::move(regimes), std::move(shapes), {"time", pieces_of(n, pieces, range)}};
+  return {std::move(shifts),
+          std::move(regimes),
+          std::move(shapes),
+          {"a mean that changes over time", pieces_of(n, pieces, range)}};
 }
 
 std::vector<RegressorGroup> FaultRegressors::partitions_of(const VectorXd& course, const SampleRange& range) const {
-  RegressorGroup motion{"scatter in motion and at rest", {}};
+  RegressorGroup motion{"a spread that differs between motion and rest", {}};
   for (const Regime& regime : regimes_of_course(course))
     motion.columns.emplace_back(regime.indicator.segment(range.first, range.count));
-  return {std::move(motion), {"scatter in time", pieces_of(course.size(), kMostPieces, range)}};
+  return {std::move(motion), {"a spread that changes over time", pieces_of(course.size(), kMostPieces, range)}};
 }
 
 }  // namespace sealwatch::trace

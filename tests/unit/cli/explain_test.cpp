@@ -94,7 +94,7 @@ TEST_F(ExplainCommand, WritesTheThreeFilesAndSaysWhereToLook) {
   EXPECT_EQ(run(), kOk);
   EXPECT_THAT(out_, HasSubstr("A: mismatch"));
   EXPECT_THAT(out_, HasSubstr("The piston meets dry friction."));
-  EXPECT_THAT(out_, HasSubstr("coulomb friction of the piston"));
+  EXPECT_THAT(out_, HasSubstr("Coulomb friction of the piston"));
   EXPECT_THAT(out_, HasSubstr("F_c = 4.010 ± 0.060 kN\n"));
   EXPECT_THAT(out_, ContainsRegex("v_s = [^\n]*, at its bound\n"));
   EXPECT_THAT(out_, ContainsRegex("v_t = [^\n]*, not identifiable\n"));

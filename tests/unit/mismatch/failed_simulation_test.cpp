@@ -83,7 +83,7 @@ TEST(FailedSimulation, OfALawThatFitsLeavesTheBestThatWas) {
   EXPECT_TRUE(naming.best.effects.empty());
   EXPECT_EQ(naming.best.model, baseline);
   EXPECT_EQ(naming.last.p_value, 0.25);
-  EXPECT_THAT(naming.remarks, ElementsAre(HasSubstr("coulomb friction at the piston")));
+  EXPECT_THAT(naming.remarks, ElementsAre(HasSubstr("Coulomb friction at the piston")));
   EXPECT_TRUE(take(naming, {{}, baseline}, fit, {}));
   EXPECT_EQ(naming.best.model, baseline);
   EXPECT_LT(naming.last.p_value, 1.0);

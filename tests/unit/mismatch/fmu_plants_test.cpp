@@ -129,22 +129,33 @@ TEST(FmuPlants, FitGivesTheParametersOfTheTextPlant) {
   }
 }
 
-// Sizes of forces ten thousand times too large: the friction is found, and nothing beside them.
-TEST(FmuPlants, ALawThatIsNothingBesideItsSizeIsToldWithThatSize) {
+// Sizes of forces ten thousand times too large: a friction that is nothing beside them.
+mismatch::Explanation beside_large_sizes(const std::string& name, double friction_N) {
   const fmi::TestFolder folder;
   std::ifstream in(SEALWATCH_SOURCE_DIR "/config/plants/spring_return.yaml");
   std::string text{std::istreambuf_iterator<char>(in), {}};
-  text.replace(text.find("name: "), 6, "name: oversized_");
+  text.replace(text.find("name: "), 6, "name: " + name + "_");
   text.replace(text.find("{N: 0.02,"), 9, "{N: 200,");
   std::ofstream((folder / "plant.yaml").string()) << text;
-  const std::vector<Recording> fit = {stroke(6.0, kFriction_N, 1), stroke(2.5, kFriction_N, 2)};
-  const std::vector<Recording> holdout = {stroke(4.0, kFriction_N, 3)};
+  const std::vector<Recording> fit = {stroke(6.0, friction_N, 1), stroke(2.5, friction_N, 2)};
+  const std::vector<Recording> holdout = {stroke(4.0, friction_N, 3)};
   const auto found = mismatch::explain(nominal_asset(loaded((folder / "plant.yaml").string())), fit, holdout);
-  ASSERT_TRUE(found) << found.error().describe();
-  EXPECT_EQ(found->verdict, MismatchVerdict::undetermined) << found->summary;
-  EXPECT_THAT(found->summary, testing::AllOf(testing::HasSubstr("friction at the piston with F_c = 60"),
-                                             testing::HasSubstr("by law_sizes in the plant file (N: 200)")));
-  EXPECT_THAT(found->next_test, testing::HasSubstr("Check law_sizes"));
+  if (!found) throw std::runtime_error(found.error().describe());
+  return *found;
+}
+
+TEST(FmuPlants, ALawThatTheRecordingsShowPlainlyIsFoundWhateverItsSize) {
+  const mismatch::Explanation found = beside_large_sizes("plain", kFriction_N);
+  ASSERT_EQ(found.verdict, MismatchVerdict::mismatch) << found.summary;
+  EXPECT_EQ(found.effects.front().what.id, "coulomb_friction") << found.summary;
+}
+
+TEST(FmuPlants, ALawThatIsNothingBesideItsSizeIsToldWithThatSize) {
+  const mismatch::Explanation found = beside_large_sizes("hidden", 0.08);
+  EXPECT_EQ(found.verdict, MismatchVerdict::undetermined) << found.summary;
+  EXPECT_THAT(found.summary, testing::AllOf(testing::HasSubstr("at the piston with"),
+                                            testing::HasSubstr("by law_sizes in the plant file (N: 200)")));
+  EXPECT_THAT(found.next_test, testing::HasSubstr("Check law_sizes"));
 }
 
 TEST(FmuPlants, ExplainGivesTheLawOfTheTextAndOfTheNativePlant) {

@@ -84,7 +84,7 @@ TEST(Remainder, BesideALawThatLeavesAFiveHundredthNoOtherIsLookedFor) {
   EXPECT_FALSE(leaves_its_form_at_most(model_with(2e8), model_with(2.1e5), 500.0)) << "0.05 % of a gross misfit";
   EXPECT_FALSE(leaves_its_form_at_most(with, with, 500.0)) << "nothing was taken";
   EXPECT_EQ(left_beside(found("stribeck_friction", "piston", 0.0).what, share_left(without, with, 500.0)),
-            "What is left beside stribeck friction at the piston is 0.1 % of what it took, and may be its exact form.");
+            "What is left beside Stribeck friction at the piston is 0.1 % of what it took, and may be its exact form.");
 }
 
 TEST(Remainder, ANoiseThatIsLessThanToldHidesNoSecondLaw) {

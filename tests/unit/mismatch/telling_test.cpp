@@ -27,7 +27,7 @@ TEST(Summary, NamesWhichLawCannotBeToldFromWhich) {
       text.find("cannot distinguish position dependent load at the piston from another form of it (k_q |x - x_q|)."),
       std::string::npos)
       << text;
-  EXPECT_NE(text.find("cannot distinguish coulomb friction at the piston from presliding friction at the piston."),
+  EXPECT_NE(text.find("cannot distinguish Coulomb friction at the piston from presliding friction at the piston."),
             std::string::npos)
       << text;
 }
@@ -54,7 +54,7 @@ TEST(Summary, SaysOfASensorThatTheRecordingsShowIt) {
   found.effects.resize(2);
   found.effects[1].what = {"coulomb_friction", "", "piston", "F_c tanh(v / v_s)", ""};
   EXPECT_EQ(
-      summary_of(found).find("The simulation lacks coulomb friction at the piston, and the recordings show sensor "
+      summary_of(found).find("The simulation lacks Coulomb friction at the piston, and the recordings show sensor "
                              "gain at the sensor of pressure A."),
       0U)
       << summary_of(found);

@@ -48,6 +48,17 @@ TEST(TimeLimit, TheReportSaysWhatWasNotAsked) {
   EXPECT_THAT(found->fit.channels, Not(IsEmpty())) << "what the model misses is told all the same";
 }
 
+// Also while the model is fitted again to what is known of its input.
+TEST(TimeLimit, WhereverItCutsThereIsAReport) {
+  std::vector<Recording> tests = two_tests();
+  for (Recording& test : tests) test.samples.input_hold = false;
+  for (double limit_s = 0.05; limit_s < 2.0; limit_s *= 1.35) {
+    const auto found = explain(actuator(), tests, {}, {.time_limit_s = limit_s});
+    ASSERT_TRUE(found) << limit_s << " s: " << found.error().describe();
+    EXPECT_THAT(found->fit.channels, Not(IsEmpty())) << limit_s << " s";
+  }
+}
+
 TEST(TimeLimit, WhereItCutsNothingItChangesNothing) {
   const std::vector<Recording> one(1, recording_of(with_a_leak(), 1.0));
   const auto limited = explain(actuator(), one, {}, {.maximum_laws = 1, .threads = 1, .time_limit_s = 1e6}),

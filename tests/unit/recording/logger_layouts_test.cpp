@@ -303,6 +303,16 @@ TEST_F(LoggerLayouts, ATimeOfMorePartsThanItHasIsRefused) {
               HasSubstr("its fraction, in column 3, must be a number"));
 }
 
+TEST_F(LoggerLayouts, AMapThatContradictsTheFileIsToldWhatTheFileIs) {
+  const std::string text = "t [s];U [mV];x [mm]\n0,0;1,5;60,1\n0,5;2,5;59,2\n1,0;4,5;57,3\n";
+  ChannelMap map = map_of("t", "");
+  map.log = {.delimiter = "semicolon", .decimal = "point"};
+  EXPECT_THAT(error_of(text, map),
+              HasSubstr("log: says delimiter: semicolon, decimal: point; the file reads with delimiter: semicolon, decimal: comma"));
+  map.log = {.delimiter = "tab", .decimal = {}};
+  EXPECT_THAT(error_of(text, map), HasSubstr("log: says delimiter: tab; the file reads with delimiter: semicolon"));
+}
+
 // "1,234" is one thousand or one: only the other cells, or the map, tell.
 TEST_F(LoggerLayouts, ACommaThatMayBeEitherIsRefusedUnlessTheDecimalSignIsKnown) {
   const std::string text = "t [ms];U [mV];x [mm]\n0;1;60\n500;2;59\n1,000;4;57\n";

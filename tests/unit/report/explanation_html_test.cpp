@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
@@ -110,6 +111,23 @@ TEST(ReportHtml, NoShareOfAMisfitThatWasAtItsFloor) {
   EXPECT_THAT(explanation_to_html(weak), Not(HasSubstr("of the misfit explained</span>")));
 }
 
+/// A model with another cause than the true one misses what that cause does otherwise.
+TEST(ReportHtml, AFindingThatLeavesAPartIsNotToBeUsedYet) {
+  mismatch::Explanation part = example_explanation();
+  const auto uses_it = [&] {
+    return std::ranges::any_of(steps_of(part),
+                               [](const std::string& step) { return step.starts_with("Use asset.explained.yaml"); });
+  };
+  ASSERT_FALSE(part.holdout.channels.empty());
+  EXPECT_TRUE(uses_it());
+  part.holdout.channels.front().rms_after = part.holdout.channels.front().weighed_rms_after = 57.7;
+  EXPECT_FALSE(uses_it());
+  const std::string html = explanation_to_html(part);
+  EXPECT_THAT(html, HasSubstr("Mismatch found and partly explained"));
+  EXPECT_THAT(html, HasSubstr("Find the rest before you use asset.explained.yaml"));
+  EXPECT_THAT(html, HasSubstr("still misses by 57.7 times its noise"));
+}
+
 TEST(ReportHtml, ASensorIsNothingThatTheModelLacks) {
   mismatch::Explanation explanation = example_explanation();
   EXPECT_THAT(explanation_to_html(explanation), HasSubstr("What the model lacks"));
@@ -129,7 +147,7 @@ TEST(ReportHtml, TellsWhatWasFound) {
                            "old model",
                            "new model",
                            "holdout_0",
-                           "coulomb friction",
+                           "Coulomb friction",
                            "misses the rise near standstill",
                            "fits better only with oil flowing",
                            "had been compensating for it",

@@ -449,7 +449,7 @@ TEST(Trace, AFrictionIsNoneOfThese) {
   EXPECT_FALSE(found.channels[0].differs);
   EXPECT_FALSE(best(found, 1).would_do) << best(found, 1).id;
   EXPECT_TRUE(found.answer.empty());
-  EXPECT_THAT(found.channels[1].by, ::testing::Contains("motion and level"));
+  EXPECT_THAT(found.channels[1].by, ::testing::Contains("a mean that differs with motion or level"));
 }
 
 TEST(Trace, WhatCannotBeComparedIsSaid) {

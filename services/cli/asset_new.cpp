@@ -217,7 +217,7 @@ std::string doubt(const Understood& log, const ChannelDescription& channel) {
 }
 
 /// Of a log whose names say nothing, CH1, CH2: its columns, and for each channel the line to complete.
-Error nothing_like_a_channel(const Understood& log, const std::string& file) {
+Error nothing_like_a_channel(const Understood& log, const AssetNewOptions& options) {
   constexpr std::size_t kMostNamed = 30;
   std::vector<std::string> columns, lines;
   // Not std::views: clang 14, whose clang-tidy reads this, cannot compile them.
@@ -226,6 +226,15 @@ Error nothing_like_a_channel(const Understood& log, const std::string& file) {
     columns.push_back(column.text);
   if (log.offer.columns.size() > kMostNamed)
     columns.push_back("and " + std::to_string(log.offer.columns.size() - kMostNamed) + " more");
+  if (options.model.empty())
+    return Error{.file = options.log,
+                 .place = {},
+                 .value = {},
+                 .rule = "its columns look like no channel of a built-in plant",
+                 .advice =
+                     "describe your plant in a file (docs/tutorial-plant.md) and give --model PLANT.yaml; the "
+                     "log's columns are " +
+                     text::separated(columns, ", ")};
   lines.push_back("time: " + mapping_text(log.map.columns.at("time")));
   for (const ChannelDescription& channel : log.plant->channels) {
     const std::string line = by_hand(log, channel);
@@ -235,7 +244,7 @@ Error nothing_like_a_channel(const Understood& log, const std::string& file) {
                                                   text::quoted(log.offer.columns[*log.offer.names].text) +
                                                   ", give each name a column of its own (a pivot table); else "
                                             : "";
-  return Error{.file = file,
+  return Error{.file = options.log,
                .place = {},
                .value = {},
                .rule = "no column looks like a channel of plant " + log.plant->name,
@@ -554,7 +563,7 @@ Result<Understood> understand(const AssetNewOptions& options) {
   if (!options.yes && isatty(STDIN_FILENO) != 0) ask(log);
   set_layout(log);
   set_columns(log);
-  if (log.guesses.empty()) return fail(nothing_like_a_channel(log, options.log));
+  if (log.guesses.empty()) return fail(nothing_like_a_channel(log, options));
   if (const Status read = read_by_map(options.log, log); !read) return fail(read.error());
   note_switched_inputs(log);
   note_gaps(log);

@@ -175,15 +175,20 @@ std::string readable_beside(double value, double other, const std::string& unit)
 /// Where nothing was found, what the fit came to beside what the asset file has.
 void print_estimates(const Explanation& explanation) {
   constexpr double kShown = 0.02;  // of the asset file's value
-  std::string text;
+  std::string text, near;
   for (const mismatch::ParameterShift& shift : explanation.parameters) {
-    const bool told = std::isfinite(shift.after_std) && !shift.after_at_bound;
-    if (!told || !(std::abs(shift.after - shift.datasheet) > kShown * std::abs(shift.datasheet))) continue;
+    if (!std::isfinite(shift.after_std) || shift.after_at_bound) continue;
+    if (!(std::abs(shift.after - shift.datasheet) > kShown * std::abs(shift.datasheet))) {
+      text::add_to_list(near, shift.name);
+      continue;
+    }
     text::add_to_list(text,
                       shift.name + " " + text::readable_with_error(shift.after, shift.after_std, shift.unit) +
                           " (asset file " + readable_beside(shift.datasheet, shift.after, shift.unit) + ")",
                       "; ");
   }
+  if (!near.empty())
+    text::add_to_list(text, near + " within " + text::percent_text(kShown) + " of the asset file", "; ");
   if (!text.empty()) std::printf("\n  %s\n", wrapped("fitted: " + text, kWidth, 4).c_str());
 }
 

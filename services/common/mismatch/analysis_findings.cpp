@@ -311,12 +311,13 @@ bool Analysis::explains() const {
   return mismatch::explains({.any = !best_.effects.empty(),
                              .proven = proven_,
                              .leave_nothing = leaves_nothing(),
-                             .share = std::min(explained_share(), share_held_out()),
+                             .share = explained_share(),
+                             .share_held_out = share_held_out(),
                              .leave_what_is_within = !asks_within(plant()) && excess(*best_.model) > kGross,
                              .as_searched = naming_.best.effects.size() == best_.effects.size(),
                              .p_before = beside_ ? naming_.first.p_value : result_.p_value,
-                             // What is missed grossly is seen without a law, before and after.
-                             .p_after = largest_excess(*best_.model) > kGross ? kSmallestP : naming_.last.p_value});
+                             .p_after = naming_.last.p_value,
+                             .leave_gross_misfit = largest_excess(*best_.model) > kGross});
 }
 
 double Analysis::share_held_out() const {

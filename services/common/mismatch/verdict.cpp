@@ -19,8 +19,8 @@ double share_explained(double before, double after) {
 bool explains(const LawsFound& laws) {
   if (!laws.any || !laws.proven || laws.leave_what_is_within) return false;
   const bool little_evidence_left =
-      laws.as_searched && evidence(laws.p_after) <= kEvidenceLeft * evidence(laws.p_before);
-  return laws.leave_nothing || laws.share >= kExplainedAtLeast || little_evidence_left;
+      laws.as_searched && !laws.leave_gross_misfit && evidence(laws.p_after) <= kEvidenceLeft * evidence(laws.p_before);
+  return laws.leave_nothing || std::min(laws.share, laws.share_held_out) >= kExplainedAtLeast || little_evidence_left;
 }
 
 Verdict verdict_of(const Findings& findings) {

@@ -28,9 +28,11 @@ struct LawsFound {
   bool proven = false;                ///< on recordings that took no part
   bool leave_nothing = false;         ///< beyond the noise
   double share = 0.0;                 ///< share_explained
+  double share_held_out = 1.0;        ///< the same of held-out recordings, where laws alone decide it
   bool leave_what_is_within = false;  ///< a gross misfit, where physics within the plant cannot be asked
   bool as_searched = false;           ///< all that the search ended with: `p_after` is then theirs
   double p_before = 1.0, p_after = 1.0;
+  bool leave_gross_misfit = false;  ///< seen without any law, whatever p_after
 };
 
 [[nodiscard]] bool explains(const LawsFound& laws);

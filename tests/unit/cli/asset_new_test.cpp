@@ -556,6 +556,14 @@ TEST_F(StrangeLogs, OfNamesThatSayNothingTheLinesToCompleteAreTold) {
   EXPECT_THAT(said, ::testing::HasSubstr("motor_voltage: {column: \"CH1 [counts]\", scale: 1, unit: \"V\"}"));
 }
 
+TEST_F(StrangeLogs, ALogOfNoBuiltInPlantAsksForAPlantFile) {
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(make("Zeit,CH1 [counts],CH2\n0,100,60\n1,200,59\n2,300,57\n", ""), kBadInput);
+  const std::string said = ::testing::internal::GetCapturedStderr();
+  EXPECT_THAT(said, ::testing::HasSubstr("its columns look like no channel of a built-in plant"));
+  EXPECT_THAT(said, ::testing::HasSubstr("give --model PLANT.yaml"));
+}
+
 TEST_F(StrangeLogs, HeaderCellsMayHaveLineBreaks) {
   for (const char* end : {"\n", "\r\n"}) {
     const std::string line = end;

@@ -48,6 +48,17 @@ TEST(FittedModel, BristlesStartAnywhere) {
   EXPECT_EQ(bristle->max, 1.0);
 }
 
+// What is held out is simulated at the values found, however many steps a plant takes that is fast between samples.
+TEST(FittedModel, WhereNoValueIsSearchedASimulationMayTakeMoreSteps) {
+  Data data;
+  data.names = {"pst"};
+  data.samples = {simulated_test(nominal_asset("eha"), 1.0)};
+  const auto steps = [&](const AssetConfig& asset) {
+    return fit_model(asset, data, nullptr, 1, 0).value().problem.simulation_options.maximum_steps;
+  };
+  EXPECT_GT(steps(with_fixed_parameters(nominal_asset("eha"))), 5 * steps(far_from_the_truth()));
+}
+
 TEST(FittedModel, ASearchGoesOnFromWhereItEnded) {
   Data data;
   data.names = {"pst"};

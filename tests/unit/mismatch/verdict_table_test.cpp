@@ -40,6 +40,19 @@ TEST(LawsExplain, ByHalfOfTheExcessOrNineTenthsOfTheEvidence) {
       << "that p-value is of other laws";
 }
 
+/// What is missed grossly is seen without any law, whatever a p-value of laws says.
+TEST(LawsExplain, AGrossMisfitByHalfOfTheExcessOnHeldOutRecordingsToo) {
+  EXPECT_TRUE(explains({.any = true, .proven = true, .share = 0.6, .share_held_out = 0.5, .leave_gross_misfit = true}));
+  EXPECT_FALSE(explains({.any = true, .proven = true, .share = 0.6, .share_held_out = 0.3}));
+  EXPECT_FALSE(explains({.any = true,
+                         .proven = true,
+                         .share = 0.4,
+                         .as_searched = true,
+                         .p_before = 1e-300,
+                         .p_after = 1e-20,
+                         .leave_gross_misfit = true}));
+}
+
 TEST(LawsExplain, NotWhereMuchIsLeftInAPlantThatHidesItsInside) {
   EXPECT_FALSE(explains({.any = true, .proven = true, .share = 0.9, .leave_what_is_within = true}));
 }

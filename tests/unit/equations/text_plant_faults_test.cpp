@@ -147,7 +147,7 @@ TEST(PlantFile, NamesEachFaultWithItsLine) {
       {"unit: N s/m", "unit: kg rpm", {"is not the SI unit", "here kg/s"}},
       {"c: {value: 4.0", "c: {value: 0", {"line 10", "give min and max"}},
       {"NAME", "eha #NAME", {"line 1, key name", "is the name of a plant that is built in"}},
-      {"N: 1e-3, ", "", {"where 1 stands for N: about 60000 N (load on its rod)"}},
+      {"N: 1e-3, ", "", {"which is N: about 60000 N (load on its rod)"}},
       {"meaning: a mass", "meening: a mass", {"did you mean 'meaning'"}},
       {"outputs:\n", "output:\n", {"line 5, key output", "did you mean 'outputs'"}},
   };

@@ -3,19 +3,22 @@
 #include <algorithm>
 #include <iterator>
 
+#include "services/common/mismatch/candidates.hpp"
 #include "services/common/mismatch/drawn_terms.hpp"
 #include "services/common/mismatch/explain_input.hpp"
 #include "services/common/mismatch/gross_mismatch.hpp"
 #include "services/common/mismatch/resolution.hpp"
+#include "services/common/mismatch/screening.hpp"
 #include "services/common/mismatch/tolerance.hpp"
 #include "services/common/mismatch/verdict.hpp"
+#include "services/common/model/runtime_simulation.hpp"
 
 namespace sealwatch::mismatch {
 Result<Explanation> Analysis::run() {
   Result<Explanation> result = analyse();
   if (time_.deadline().cancelled()) return fail("the analysis was called off");
   if (result) std::ranges::copy(time_.not_asked(), std::back_inserter(result->not_asked));
-  if (result && time_.deadline().was_met()) say_what_was_cut(*result);
+  if (result && time_.deadline().was_met() && more_time_helps_) say_what_was_cut(*result);
   return result;
 }
 
@@ -33,9 +36,12 @@ Result<Explanation> Analysis::analyse() {
   take_up(std::move(*baseline));
   if (const auto runaway = follows_no_machine())
     return tell_no_law(runs_away(in_words(*runaway), advice_for_runaway()));
-  if (const Status status = look_for_what_is_missing(); !status)
-    return tell_no_law(time_.in_time("what is missing") ? cannot_be_asked(status.error())
-                                                        : time_was_up(options_.time_limit_s));
+  if (const Status status = look_for_what_is_missing(); !status) {
+    if (time_.in_time("what is missing")) return tell_no_law(cannot_be_asked(status.error()));
+    const std::optional<Error> ever = why_no_law_can_be_asked();
+    more_time_helps_ = !ever;
+    return tell_no_law(ever ? cannot_be_asked(*ever) : time_was_up(options_.time_limit_s));
+  }
   if (at_rest(*baseline_, prepared(fit_))) why_none_ = nothing_moves();
   if (const auto part = driven_unseen(); part && !why_none_) why_none_ = drives_unseen(*part);
   if (!why_none_ && time_.in_time("whether something changed between the tests")) look_for_a_change();
@@ -85,6 +91,19 @@ Result<Explanation> Analysis::tell_no_law(WhyNone why) {
   if (const Status status = finish(); !status) return fail(status.error());
   tell("done", 1.0);
   return std::move(result_);
+}
+
+std::optional<Error> Analysis::why_no_law_can_be_asked() {
+  const FittedModel& model = *baseline_;
+  if (!may_jump(*model.problem.recordings.front().simulation)) return std::nullopt;
+  std::vector<Candidate> one =
+      find_candidates(*model.problem.recordings.front().simulation, model.asset.physics, Laws::listed);
+  if (one.empty()) return std::nullopt;
+  one.erase(one.begin() + 1, one.end());
+  time_.allow_what_is_needed();
+  const Result<Screening> asked = screen_laws(model, std::move(one), prepared(fit_),
+                                              {.draws = 1, .seed = options_.seed, .threads = options_.threads});
+  return asked ? std::nullopt : std::optional(asked.error());
 }
 
 void Analysis::tell(std::string_view step, double share) const {

@@ -95,6 +95,8 @@ class Analysis {
   [[nodiscard]] std::optional<Runaway> follows_no_machine() const;
   // The model was fitted, but nothing can be asked of it: no law, no test, no power.
   Result<Explanation> tell_no_law(WhyNone why);
+  // Where time was up before a law was asked: a plant that jumps at events is never asked for one, whatever the time.
+  [[nodiscard]] std::optional<Error> why_no_law_can_be_asked();
   void say_how_likely_by_noise(const Screening& screening);
   // Of other data; what was predicted before is of no use.
   void forget_predictions() { predictions_ = std::make_shared<KeptPredictions>(); }
@@ -229,9 +231,10 @@ class Analysis {
   std::string too_small_by_size_;  ///< a law that was taken out by law_sizes alone, in words
   Trial tried_;                    ///< what was taken back, as it explains too little
   bool proven_ = false;
-  bool all_compared_ = true;                               ///< the models can be simulated on every recording
-  std::vector<std::string> not_compared_;                  ///< recordings on which a model cannot be simulated, and why
-  bool none_compared_ = false;                             ///< of the held-out recordings
+  bool all_compared_ = true;               ///< the models can be simulated on every recording
+  std::vector<std::string> not_compared_;  ///< recordings on which a model cannot be simulated, and why
+  bool none_compared_ = false;             ///< of the held-out recordings
+  bool more_time_helps_ = true;
   bool input_swings_ = false;                              ///< between its samples, through much of the tests
   std::optional<WhyNone> why_none_;                        ///< set: no law is named
   std::shared_ptr<const FittedModel> with_another_value_;  ///< of the asset file, where that explains it

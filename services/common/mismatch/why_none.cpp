@@ -1,12 +1,18 @@
 #include "services/common/mismatch/why_none.hpp"
 
 #include <algorithm>
+#include <cctype>
 
 #include "services/common/mismatch/recorded_units.hpp"
 #include "services/common/mismatch/telling.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
+
+std::string as_a_sentence(std::string words) {
+  words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
+  return words + ".";
+}
 
 constexpr const char* kTestsOfOneTime =
     "Analyse tests of one time together: several loads, speeds and strokes within a few days.";
@@ -16,7 +22,9 @@ constexpr const char* kTestsOfOneTime =
 WhyNone cannot_be_asked(const Error& why) {
   return {.summary = "The model was fitted, but the search for what is missing failed (" + reason_in_words(why) +
                      "): nothing can be said of these recordings.",
-          .next_test = "Check the recorded input around that time, or analyse without this recording."};
+          .next_test = why.advice.empty()
+                           ? "Check the recorded input around that time, or analyse without this recording."
+                           : as_a_sentence(why.advice)};
 }
 
 std::string more_time_than(double limit_s) {

@@ -58,6 +58,7 @@ class ProcessPool {
  private:
   FreeInCopies mutex_;
   std::vector<std::unique_ptr<FmuProcess>> idle_;
+  LostProcesses lost_;
 };
 
 class FmuEquations final : public RuntimeEquations {

@@ -65,6 +65,7 @@ Status HostProcess::launch() {
   owner_ = getpid();
   child_ = host->process, life_ = host->life, output_ = host->output;
   alive_ = true;
+  loss_.reset();
   return {};
 }
 
@@ -125,7 +126,7 @@ std::span<std::byte> HostProcess::heap() const {
 }
 
 Status HostProcess::request(Operation operation, const char* what, double seconds, double time_s,
-                            const std::function<void()>& look) {
+                            const std::function<bool()>& look) {
   using Clock = std::chrono::steady_clock;
   if (!alive()) return fail(failure(place_of(what, time_s), "the process that ran the FMU has ended", "start anew"));
   if (local_) return request_here(operation, what, time_s);
@@ -137,23 +138,26 @@ Status HostProcess::request(Operation operation, const char* what, double second
   std::uint32_t calls = header_->calls.load();
   bool told = !slow_starts();
   for (std::uint32_t last = number - 1; !wait_while(header_->answers, last, kLook_s);) {
-    if (look) look();
+    const bool unwanted = look && look();
     if (has_ended()) {
       const int status = kill_and_reap();
       if (header_->answers.load() == number) break;
-      return fail(ended(place(what, time_s), status));
+      loss_ = Loss{.hung = false, .error = ended(place(what, time_s), status)};
+      return fail(loss_->error);
     }
     if (const std::uint32_t now = header_->calls.load(); now != calls) calls = now, begin = Clock::now();
     const bool starts =
         header_->inside == Operation::begin || operation == Operation::load || operation == Operation::begin;
     const double most = header_->inside == Operation::begin ? limits_.start_s : seconds;
     const double waited = std::chrono::duration<double>(Clock::now() - begin).count();
+    if (unwanted) return fail(end_unwanted(place(what, time_s), waited));
     if (starts && !told && waited > limits_.told_s) {
       slow_starts()(file_ + ": waiting for the FMU to start, at most " + std::to_string(std::lround(most)) + " s");
       told = true;
     }
     if (waited < most) continue;
-    return fail(end_silent(place(what, time_s), most));
+    loss_ = Loss{.hung = true, .error = end_silent(place(what, time_s), most)};
+    return fail(loss_->error);
   }
   if (header_->status != AnswerStatus::failed) return {};
   std::array<char, kTextBytes> text{};
@@ -213,6 +217,14 @@ Error HostProcess::end_silent(const std::string& where, double waited_s) {
   }
   seen.append("did not answer within ").append(std::to_string(std::lround(waited_s))).append(" s and was ended");
   return failure(where, std::move(seen), cause + "try it in the tool that made it" + said() + printed());
+}
+
+Error HostProcess::end_unwanted(const std::string& where, double waited_s) {
+  kill_and_reap();
+  return failure(where,
+                 "the time limit was over, and the FMU had not answered for " + text::significant(waited_s, 2) +
+                     " s: it was ended",
+                 "give more time, or try it in the tool that made it" + said() + printed());
 }
 
 Error HostProcess::ended(const std::string& what, int status) const {

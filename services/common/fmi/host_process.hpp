@@ -48,6 +48,12 @@ class HostProcess {
   HostProcess& operator=(const HostProcess&) = delete;
   /// Not in a copy of the process that started it: two who ask at once would get each other's answers.
   [[nodiscard]] bool alive() const;
+  /// How it ended in the middle of a request: by itself, or because it did not answer within its limit.
+  struct Loss {
+    bool hung = false;
+    Error error;
+  };
+  [[nodiscard]] const std::optional<Loss>& loss() const { return loss_; }
   /// For a start that is only tried.
   void limit_start(double seconds) { limits_.start_s = seconds; }
 
@@ -59,9 +65,9 @@ class HostProcess {
   /// Ends it, with what it has open; launch() may follow.
   void end();
   /// `what` it is asked, at `time_s` unless that is NaN. `seconds`: how long a call of the binary may take within it.
-  /// `look` is called now and then.
+  /// `look` is called now and then; true: nobody waits for the answer any more, and the process is ended.
   [[nodiscard]] Status request(Operation operation, const char* what, double seconds, double time_s = kNoTime,
-                               const std::function<void()>& look = {});
+                               const std::function<bool()>& look = {});
   [[nodiscard]] const ProcessLimits& limits() const { return limits_; }
   [[nodiscard]] std::span<std::byte> heap() const;
   [[nodiscard]] Packer packer() const { return Packer(heap()); }
@@ -79,6 +85,8 @@ class HostProcess {
   [[nodiscard]] Error ended(const std::string& what, int status) const;
   /// Ends a process that has not answered for so long.
   [[nodiscard]] Error end_silent(const std::string& where, double waited_s);
+  /// Ends a process that nobody waits for any more, which is no fault of it.
+  [[nodiscard]] Error end_unwanted(const std::string& where, double waited_s);
   /// Where a run is, from what the process has written down before it called the binary.
   [[nodiscard]] std::string place(const char* what, double time_s) const;
   [[nodiscard]] std::string printed() const;
@@ -98,6 +106,7 @@ class HostProcess {
   int life_ = -1, output_ = -1;
   bool alive_ = false;
   double peak_bytes_ = 0.0;  ///< of memory, of the one that was reaped last
+  std::optional<Loss> loss_;
   std::unique_ptr<LocalHost> local_;
   std::vector<std::byte> local_heap_;
 };

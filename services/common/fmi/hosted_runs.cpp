@@ -2,12 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <optional>
 
 namespace sealwatch::fmi {
 namespace {
 
 /// Simulations that a process keeps: those of several recordings take turns.
 constexpr std::size_t kMostSimulations = 24;
+
+/// With a run that has been told to stop, and is in a call of the binary.
+constexpr std::chrono::seconds kPatience{3};
 
 /// What the largest request or answer of a run takes, with room for the words of an error.
 std::size_t bytes_for(const RuntimeRun& run) {
@@ -25,8 +30,8 @@ std::size_t bytes_for(const RuntimeRun& run) {
 }  // namespace
 
 Result<std::unique_ptr<RunProcess>> RunProcess::start(const std::string& fmu, const HostedPlant& plant,
-                                                      std::size_t heap_bytes) {
-  std::unique_ptr<RunProcess> process(new RunProcess(fmu, heap_bytes, ProcessLimits{}));
+                                                      std::size_t heap_bytes, const ProcessLimits& limits) {
+  std::unique_ptr<RunProcess> process(new RunProcess(fmu, heap_bytes, limits));
   if (const Status launched = process->launch(); !launched) return fail(launched.error());
   Packer packer = process->packer();
   put_plant(packer, plant);
@@ -64,8 +69,12 @@ Result<SimulatedOutputs> RunProcess::run(const RuntimeRun& run) {
   packer.put(*place);
   put_run(packer, run);
   header().stop = 0;
+  std::optional<Deadline::Clock::time_point> told;  // to stop, which a run does between two calls of the binary
   const auto look = [&] {
-    if (passed(run.options.deadline)) header().stop = 1;
+    if (!passed(run.options.deadline)) return false;
+    header().stop = 1;
+    if (!told) told = Deadline::Clock::now();
+    return Deadline::Clock::now() - *told > kPatience;
   };
   Status status = request(Operation::run, "a simulation", limits().call_s, kNoTime, look);
   std::vector<std::array<double, kSiteSignals>> signals(run.sites);
@@ -77,7 +86,7 @@ Result<SimulatedOutputs> RunProcess::run(const RuntimeRun& run) {
     if (run.injected != nullptr) run.injected->weigh(time_s, signals, weights);
     Packer answer = this->packer();
     answer.put_numbers(weights);
-    look();
+    static_cast<void>(look());
     status = request(Operation::weights, "a simulation", limits().call_s, kNoTime, look);
   }
   if (!status) return fail(status.error());
@@ -103,13 +112,15 @@ Result<std::unique_ptr<RunProcess>> HostedRuns::take(const RuntimeRun& run) {
   }
   // Memory that is not touched costs nothing: the next runs may be larger.
   constexpr std::size_t kUsual = 64U << 20U;
-  return RunProcess::start(fmu_, plant_, std::max(kUsual, 2 * needed));
+  return RunProcess::start(fmu_, plant_, std::max(kUsual, 2 * needed), limits_);
 }
 
 Result<SimulatedOutputs> HostedRuns::run(const RuntimeRun& run) {
+  if (const auto why_none = lost_.given_up()) return fail(*why_none);
   auto process = take(run);
   if (!process) return fail(process.error());
   Result<SimulatedOutputs> outputs = (*process)->run(run);
+  lost_.note(**process);
   if (!(*process)->alive()) return outputs;
   const std::scoped_lock lock(mutex_);
   idle_.push_back(std::move(*process));

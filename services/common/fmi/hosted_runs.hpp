@@ -8,6 +8,7 @@
 
 #include "sealwatch/core/process_copy.hpp"
 #include "services/common/fmi/host_process.hpp"
+#include "services/common/fmi/lost_processes.hpp"
 #include "services/common/fmi/run_wire.hpp"
 
 namespace sealwatch::fmi {
@@ -15,7 +16,7 @@ namespace sealwatch::fmi {
 class RunProcess : public HostProcess {
  public:
   [[nodiscard]] static Result<std::unique_ptr<RunProcess>> start(const std::string& fmu, const HostedPlant& plant,
-                                                                 std::size_t heap_bytes);
+                                                                 std::size_t heap_bytes, const ProcessLimits& limits);
   [[nodiscard]] Result<SimulatedOutputs> run(const RuntimeRun& run);
   [[nodiscard]] bool knows(std::uint64_t simulation) const;
   [[nodiscard]] std::size_t room_bytes() const { return heap().size(); }
@@ -36,7 +37,8 @@ class RunProcess : public HostProcess {
 /// The processes of one plant, one for each thread that runs simulations.
 class HostedRuns {
  public:
-  HostedRuns(std::string fmu, HostedPlant plant) : fmu_(std::move(fmu)), plant_(std::move(plant)) {}
+  HostedRuns(std::string fmu, HostedPlant plant, const ProcessLimits& limits = {})
+      : fmu_(std::move(fmu)), plant_(std::move(plant)), limits_(limits) {}
   [[nodiscard]] Result<SimulatedOutputs> run(const RuntimeRun& run);
 
  private:
@@ -44,6 +46,8 @@ class HostedRuns {
 
   std::string fmu_;
   HostedPlant plant_;
+  ProcessLimits limits_;
+  LostProcesses lost_;
   FreeInCopies mutex_;
   std::vector<std::unique_ptr<RunProcess>> idle_;
 };

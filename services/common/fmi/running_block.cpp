@@ -21,6 +21,7 @@ std::vector<double> state_steps(const FmuBlock& block) {
 }  // namespace
 
 Result<std::unique_ptr<FmuProcess>> ProcessPool::take(const FmuBlock& block, std::size_t slots) {
+  if (const auto why_none = lost_.given_up()) return fail(*why_none);
   std::vector<std::unique_ptr<FmuProcess>> gone;  // they take a while to end, in which nobody should wait
   {
     const std::scoped_lock lock(mutex_);
@@ -37,6 +38,7 @@ Result<std::unique_ptr<FmuProcess>> ProcessPool::take(const FmuBlock& block, std
 }
 
 void ProcessPool::give_back(std::unique_ptr<FmuProcess> process) {
+  lost_.note(*process);
   if (!process->alive()) return;
   const std::scoped_lock lock(mutex_);
   idle_.push_back(std::move(process));

@@ -6,11 +6,15 @@
 #include <fstream>
 #include <numbers>
 
+#include "sealwatch/core/file.hpp"
+#include "sealwatch/core/text.hpp"
 #include "sealwatch/model/driving_channels.hpp"
 #include "sealwatch/model/law_sizes.hpp"
 #include "sealwatch/model/simulation.hpp"
 #include "services/common/fmi/export/fmu_writer.hpp"
 #include "services/common/fmi/export/law_code.hpp"
+#include "services/common/fmi/fmu_file.hpp"
+#include "services/common/fmi/hosted_runs.hpp"
 #include "services/common/fmi/import_fmu.hpp"
 #include "services/common/runtime/plant_file.hpp"
 #include "tests/unit/fmi/fmu_builder.hpp"
@@ -563,6 +567,114 @@ TEST(FmuPlant, ACrashInARunIsAnErrorOfTheRun) {
   const auto outputs = (*simulation)->run((*simulation)->start(), {});
   ASSERT_FALSE(outputs);
   EXPECT_THAT(outputs.error().describe(), HasSubstr("crashed"));
+  std::string last;  // as in a search, which tries other values
+  for (int run = 1; run < LostProcesses::kMostCrashes; ++run)
+    last = (*simulation)->run((*simulation)->start(), {}).error().describe();
+  EXPECT_THAT(last, testing::Not(HasSubstr("one after the other")));
+  EXPECT_THAT((*simulation)->run((*simulation)->start(), {}).error().describe(),
+              testing::AllOf(HasSubstr("crashed: Segmentation fault, 6 times one after the other"),
+                             HasSubstr("the derivatives at t = 0.5")));
+}
+
+/// A run of it as a simulation asks for, with limits of the test's own.
+struct HostedStroke {
+  AssetConfig asset;
+  TimeSeries recorded = strokes();
+  RecordedInput input{recorded.time_s, {{.values = recorded.channels[0].values}}};
+  ModelValues values = {};
+  SimulationOptions options = {};
+  [[nodiscard]] RuntimeRun run() const {
+    return {.simulation = 1,
+            .asset = asset,
+            .recorded = recorded,
+            .channels = 1,
+            .input = input,
+            .values = values,
+            .free = {},
+            .options = options};
+  }
+};
+
+struct HostedUnit {
+  std::shared_ptr<const FmuFile> fmu;
+  HostedPlant plant;
+  HostedStroke stroke;
+};
+
+HostedUnit hosted(const TestFolder& folder, const std::string& binary, const std::string& name) {
+  const auto fmu = FmuFile::open(folder.build(spring_return(binary)));
+  const std::string file = written(folder, plant_text(name));
+  const auto plant = load_plant(file);
+  EXPECT_TRUE(plant) << plant.error().front().describe();
+  HostedUnit unit{.fmu = *fmu,
+                  .plant = {.file = file,
+                            .hash = content_hash(*read_file(file, kLongestYaml_bytes)),
+                            .fmu_folder = (*fmu)->unpacked().folder.path().string()},
+                  .stroke = {.asset = nominal_asset(name)}};
+  unit.stroke.values = (*PlantSimulation::create(unit.stroke.asset, unit.stroke.recorded))->start();
+  return unit;
+}
+
+double seconds_since(Deadline::Clock::time_point begin) {
+  return std::chrono::duration<double>(Deadline::Clock::now() - begin).count();
+}
+
+/// A search would wait for it at each of its points.
+TEST(FmuPlant, AUnitThatHangsIsWaitedForOnce) {
+  const TestFolder folder;
+  const HostedUnit unit = hosted(folder, "fmu_hang2", "hanging");
+  HostedRuns runs(unit.fmu->name(), unit.plant, {.call_s = 1.0});
+  const auto first = runs.run(unit.stroke.run());
+  ASSERT_FALSE(first);
+  EXPECT_THAT(first.error().describe(), testing::AllOf(HasSubstr("model.fmu"), HasSubstr("the derivatives at t = 0.5"),
+                                                       HasSubstr("did not answer within 1 s")));
+  const auto begin = Deadline::Clock::now();
+  const auto second = runs.run(unit.stroke.run());
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().describe(), first.error().describe());
+  EXPECT_LT(seconds_since(begin), 0.1);
+}
+
+TEST(FmuPlant, ARunThatIsInACallEndsSoonAfterItsDeadline) {
+  const TestFolder folder;
+  HostedUnit unit = hosted(folder, "fmu_hang2", "hanging_late");
+  Deadline deadline;
+  deadline.set_in(0.5);
+  unit.stroke.options.deadline = &deadline;
+  HostedRuns runs(unit.fmu->name(), unit.plant);
+  const auto begin = Deadline::Clock::now();
+  const auto outputs = runs.run(unit.stroke.run());
+  ASSERT_FALSE(outputs);
+  EXPECT_THAT(outputs.error().describe(),
+              testing::AllOf(HasSubstr("the derivatives at t = 0.5"), HasSubstr("the time limit was over")));
+  EXPECT_LT(seconds_since(begin), 10.0);
+}
+
+/// A service runs for months: what the unit waited for may be there again. A run between makes single crashes of them.
+TEST(FmuPlant, AUnitThatWasGivenUpIsTriedAgainLater) {
+  const TestFolder folder;
+  const HostedUnit unit = hosted(folder, "fmu_crash2", "crashing_again");
+  const auto now = LostProcesses::Clock::now();
+  const auto run_until = [&](LostProcesses& lost, double end_s) {
+    auto process = RunProcess::start(unit.fmu->name(), unit.plant, 1U << 20U, {});
+    ASSERT_TRUE(process) << process.error().describe();
+    HostedStroke stroke = unit.stroke;
+    while (stroke.recorded.time_s.back() > end_s) {
+      stroke.recorded.time_s.pop_back();
+      for (Series& channel : stroke.recorded.channels) channel.values.pop_back();
+    }
+    stroke.input = {stroke.recorded.time_s, {{.values = stroke.recorded.channels[0].values}}};
+    EXPECT_EQ((*process)->run(stroke.run()).has_value(), end_s < 0.5);
+    lost.note(**process, now);
+  };
+  LostProcesses lost;
+  for (int run = 1; run < LostProcesses::kMostCrashes; ++run) run_until(lost, 0.6);
+  run_until(lost, 0.3);
+  for (int run = 1; run < LostProcesses::kMostCrashes; ++run) run_until(lost, 0.6);
+  EXPECT_FALSE(lost.given_up(now));
+  run_until(lost, 0.6);
+  EXPECT_TRUE(lost.given_up(now));
+  EXPECT_FALSE(lost.given_up(now + std::chrono::minutes(11)));
 }
 
 }  // namespace

@@ -6,12 +6,14 @@
 #include <string>
 
 #include "services/common/fmi/fmu_file.hpp"
+#include "services/common/fmi/host_process.hpp"
 
 namespace sealwatch::fmi {
 
 struct ImportOptions {
   /// What is tried that takes a while, and what is not known in the end.
   std::function<void(const std::string&)> tell = [](const std::string&) {};
+  double start_s = ProcessLimits{}.start_s;  ///< for its first start
   /// The FMU is started with other values too, to learn what moves its states: each start may take so long, or three times
   /// the first one, and
   double trial_s = 5.0;

@@ -29,7 +29,7 @@ class UnitStart {
     if (!setup) return fail(setup.error());
     std::vector<double> inputs = starts_of(selection.inputs);
     std::vector<double> parameters = starts_of(selection.parameters);
-    auto process = FmuProcess::start(file_.name(), *setup, 1);
+    auto process = FmuProcess::start(file_.name(), *setup, 1, {.start_s = options_.start_s});
     if (!process) return fail(process.error());
     const std::vector<double> steps(rows_.states.size(), 1e-7), input_steps(inputs.size(), 1e-7);
     const auto begin = [&] {
@@ -41,7 +41,10 @@ class UnitStart {
     };
     const auto before = Clock::now();
     auto beginning = begin();
-    if (!beginning) return leave_out_refused(selection) ? run() : fail(beginning.error());
+    if (!beginning) {
+      const bool hung = (*process)->loss() && (*process)->loss()->hung;  // it has been waited for long enough
+      return !hung && leave_out_refused(selection) ? run() : fail(beginning.error());
+    }
     constexpr double kSlower = 3.0;  // than the first start
     trial_s_ = std::max(trial_s_, kSlower * std::chrono::duration<double>(Clock::now() - before).count());
     out_.beginning = std::move(*beginning);

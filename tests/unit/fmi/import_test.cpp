@@ -169,6 +169,18 @@ TEST(ImportFmu, OneThatHangsAtOtherParametersIsNotWaitedForLong) {
   EXPECT_THAT(told, AllOf(HasSubstr("did not answer within"), HasSubstr("was not tried: u, M, F_v, k_s, k_F;")));
 }
 
+/// Not once more with parameters left out, which it may refuse: that would be told as a second wait with another limit.
+TEST(ImportFmu, OneThatHangsAtItsStartIsStartedOnce) {
+  const TestFolder folder;
+  const auto file = FmuFile::open(folder.build(spring_return("fmu_spring_hang2")));
+  ASSERT_TRUE(file) << file.error().describe();
+  const auto begin = std::chrono::steady_clock::now();
+  const auto text = plant_file_of(**file, "model.fmu", {.start_s = 1.0, .trial_s = 20.0});
+  ASSERT_FALSE(text);
+  EXPECT_THAT(text.error().describe(), HasSubstr("did not answer within 1 s"));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+}
+
 TEST(ImportFmu, OneThatRefusesOtherParametersSlowlyIsTriedForAWhile) {
   const TestFolder folder;
   std::string told;

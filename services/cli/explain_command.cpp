@@ -223,11 +223,13 @@ void print_text(const Explanation& explanation, const Files& files) {
 }
 
 Result<Explanation> analyse(const ExplainEngine& engine, const ExplainOptions& options, const AssetConfig& asset,
-                            const std::vector<Recording>& fit, const std::vector<Recording>& holdout) {
+                            const std::vector<Recording>& fit, const std::vector<Recording>& holdout,
+                            Deadline::Clock::time_point begin) {
   mismatch::ExplainOptions settings;
   settings.seed = options.seed;
   settings.threads = options.threads;
   settings.time_limit_s = options.time_limit_s;
+  settings.time_used_s = std::chrono::duration<double>(Deadline::Clock::now() - begin).count();
   Progress progress("explain", 100);
   return engine(asset, fit, holdout, settings, [&progress](std::string_view step, double share) {
     progress.show(static_cast<std::size_t>(std::lround(100.0 * share)), step);
@@ -252,10 +254,13 @@ int explain_with(const ExplainEngine& engine, const ExplainOptions& options) {
   const auto holdout = read_recordings(options.holdout, *asset, **plant);
   Directory directory(options.directory);
   if (!holdout || !good(all_different(*fit, *holdout)) || !good(directory.make())) return kBadInput;
-  tell_runaway(*fit, *asset);
+  const auto begin = Deadline::Clock::now();
+  Deadline deadline;
+  deadline.set_in(options.time_limit_s);
+  tell_runaway(*fit, *asset, &deadline);
 
   const Files files = files_in(options.directory);
-  const Result<Explanation> explanation = analyse(engine, options, *asset, *fit, *holdout);
+  const Result<Explanation> explanation = analyse(engine, options, *asset, *fit, *holdout, begin);
   if (!explanation) {
     complain(explanation.error());
     std::error_code none;

@@ -43,13 +43,11 @@ bool inputs_recorded(const PlantDescription& plant, const std::vector<Recording>
   });
 }
 
-FitResult fit_whole(const AssetConfig& asset, const std::vector<Recording>& recordings, double time_limit_s) {
+FitResult fit_whole(const AssetConfig& asset, const std::vector<Recording>& recordings, const Deadline& deadline) {
   std::vector<TimeSeries> samples;
   samples.reserve(recordings.size());
   for (const Recording& recording : recordings) samples.push_back(recording.samples);
   ActuatorFitOptions search = search_of(asset);
-  Deadline deadline;
-  deadline.set_in(time_limit_s);
   search.deadline = &deadline;
   Progress progress("fit", 100);
   static constexpr std::chrono::seconds kLong{5};  // one that takes less is told by its result alone
@@ -176,7 +174,8 @@ void print_text(const AssetConfig& asset, const std::vector<std::string>& record
 }
 
 std::optional<FitResult> fit_as_asked(const FitOptions& options, const AssetConfig& asset,
-                                      const PlantDescription& plant, const std::vector<Recording>& recordings) {
+                                      const PlantDescription& plant, const std::vector<Recording>& recordings,
+                                      const Deadline& deadline) {
   std::vector<std::string> known = {asset.model};
   if (has_cylinder_circuit(asset)) known.emplace_back(kCylinderCircuit);
   if (!options.model.empty() && std::find(known.begin(), known.end(), options.model) == known.end()) {
@@ -189,7 +188,7 @@ std::optional<FitResult> fit_as_asked(const FitOptions& options, const AssetConf
   }
   const bool cylinder = options.model.empty() ? has_cylinder_circuit(asset) && !inputs_recorded(plant, recordings)
                                               : options.model == kCylinderCircuit;
-  if (!cylinder) return fit_whole(asset, recordings, options.time_limit_s);
+  if (!cylinder) return fit_whole(asset, recordings, deadline);
   std::vector<FitReport> fits;
   fits.reserve(recordings.size());
   for (const Recording& recording : recordings) fits.push_back(fit_cylinder(asset, recording));
@@ -205,8 +204,10 @@ int run_fit(const FitOptions& options) {
   const Result<const PlantDescription*> plant = find_plant(asset->model);
   const auto recordings = read_recordings(options.recordings, *asset, **plant);
   if (!recordings) return kBadInput;
-  const std::optional<Runaway> runaway = tell_runaway(*recordings, *asset);
-  std::optional<FitResult> fit = fit_as_asked(options, *asset, **plant, *recordings);
+  Deadline deadline;
+  deadline.set_in(options.time_limit_s);
+  const std::optional<Runaway> runaway = tell_runaway(*recordings, *asset, &deadline);
+  std::optional<FitResult> fit = fit_as_asked(options, *asset, **plant, *recordings, deadline);
   if (!fit) return kBadInput;
   if (runaway && !follows(fit->report)) {
     fit->report.admissible = false;

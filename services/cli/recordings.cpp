@@ -63,9 +63,10 @@ std::vector<std::string> names_of(const std::vector<Recording>& recordings) {
   return names;
 }
 
-std::optional<Runaway> tell_runaway(const std::vector<Recording>& recordings, const AssetConfig& asset) {
+std::optional<Runaway> tell_runaway(const std::vector<Recording>& recordings, const AssetConfig& asset,
+                                    const Deadline* deadline) {
   if (recordings.empty()) return std::nullopt;
-  std::optional<Runaway> found = find_runaway(asset, recordings.front().samples);
+  std::optional<Runaway> found = find_runaway(asset, recordings.front().samples, deadline);
   if (found)
     std::fprintf(stderr, "sealwatch: warning: %s: %s %s\n", recordings.front().file.c_str(), in_words(*found).c_str(),
                  advice_for_runaway().c_str());

@@ -28,6 +28,7 @@ void tell_warnings(const Recording& recording);
 [[nodiscard]] std::vector<std::string> names_of(const std::vector<Recording>& recordings);
 
 /// Warns on standard error where the first recording's simulation runs away by itself.
-std::optional<Runaway> tell_runaway(const std::vector<Recording>& recordings, const AssetConfig& asset);
+std::optional<Runaway> tell_runaway(const std::vector<Recording>& recordings, const AssetConfig& asset,
+                                    const Deadline* deadline = nullptr);
 
 }  // namespace sealwatch::cli

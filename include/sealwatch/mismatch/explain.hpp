@@ -21,6 +21,7 @@ struct ExplainOptions {
   /// The search ends there with the best that it has, and says what it did not ask; a few simulations that the report
   /// needs come behind it. Where it did not cut the search it changes nothing.
   double time_limit_s = std::numeric_limits<double>::infinity();
+  double time_used_s = 0.0;     ///< of it, before
   std::stop_token cancel = {};  ///< calls the analysis off, within a second: an Error
   [[nodiscard]] Status validate() const;
 };

@@ -16,14 +16,14 @@ constexpr double kRunsAway =
 constexpr std::size_t kFewestInPiece = 10;
 
 /// Of each output that shows one state alone, the decades by which an error in that state's start has grown by the end.
-std::map<std::string, double> grown_over(const AssetConfig& asset, const TimeSeries& piece) {
+std::map<std::string, double> grown_over(const AssetConfig& asset, const TimeSeries& piece, const Deadline* deadline) {
   std::map<std::string, double> decades;
   const auto simulation = PlantSimulation::create(asset, piece);
   if (!simulation) return decades;
   std::vector<FreeQuantity> starts;
   for (std::size_t k = 0; k < (*simulation)->state_names().size(); ++k)
     starts.push_back({FreeQuantity::Kind::initial_state, k});
-  const Result<SimulatedOutputs> outputs = (*simulation)->run((*simulation)->start(), starts);
+  const Result<SimulatedOutputs> outputs = (*simulation)->run((*simulation)->start(), starts, {.deadline = deadline});
   if (!outputs) return decades;
   const Eigen::Index channels = outputs->values.cols(), last = outputs->values.rows() - 1;
   for (Eigen::Index c = 0; c < channels; ++c) {
@@ -39,7 +39,7 @@ std::map<std::string, double> grown_over(const AssetConfig& asset, const TimeSer
 
 }  // namespace
 
-std::optional<Runaway> find_runaway(const AssetConfig& asset, const TimeSeries& recorded) {
+std::optional<Runaway> find_runaway(const AssetConfig& asset, const TimeSeries& recorded, const Deadline* deadline) {
   const auto plant = find_plant(asset.model);
   if (!plant || (*plant)->file.empty()) return std::nullopt;
   std::map<std::string, double> least;
@@ -47,9 +47,11 @@ std::optional<Runaway> find_runaway(const AssetConfig& asset, const TimeSeries& 
     const std::size_t count = recorded.time_s.size() / pieces;
     if (count < kFewestInPiece) return std::nullopt;
     std::map<std::string, double> decades;
-    for (std::size_t piece = 0; piece < pieces; ++piece)
-      for (const auto& [channel, grown] : grown_over(asset, rows_of(recorded, piece * count, (piece + 1) * count)))
-        decades[channel] += grown;
+    for (std::size_t piece = 0; piece < pieces; ++piece) {
+      const TimeSeries rows = rows_of(recorded, piece * count, (piece + 1) * count);
+      for (const auto& [channel, grown] : grown_over(asset, rows, deadline)) decades[channel] += grown;
+      if (passed(deadline)) return std::nullopt;  // a product without some of its pieces says nothing
+    }
     for (const auto& [channel, grown] : decades) {
       const auto known = least.try_emplace(channel, grown).first;
       known->second = std::min(known->second, grown);

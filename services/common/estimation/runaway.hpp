@@ -11,6 +11,7 @@
 #include <string>
 
 #include "sealwatch/config/asset.hpp"
+#include "sealwatch/core/deadline.hpp"
 #include "sealwatch/core/time_series.hpp"
 
 namespace sealwatch {
@@ -21,8 +22,9 @@ struct Runaway {
 };
 
 /// The output that runs away most, of a plant that came as a file; nothing where none does or no piece can be simulated,
-/// which is told elsewhere.
-[[nodiscard]] std::optional<Runaway> find_runaway(const AssetConfig& asset, const TimeSeries& recorded);
+/// which is told elsewhere; nor where the deadline comes first.
+[[nodiscard]] std::optional<Runaway> find_runaway(const AssetConfig& asset, const TimeSeries& recorded,
+                                                  const Deadline* deadline = nullptr);
 
 /// What it means for whoever simulates it over a whole test, and what to do, in two sentences.
 [[nodiscard]] std::string in_words(const Runaway& runaway);

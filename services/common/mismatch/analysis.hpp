@@ -35,7 +35,7 @@ class Analysis {
         holdout_(std::move(holdout)),
         options_(options),
         progress_(progress),
-        time_(options.time_limit_s, options.cancel) {
+        time_(options.time_limit_s, options.cancel, options.time_used_s) {
     fit_.deadline = holdout_.deadline = &time_.deadline();
     for (const auto& [name, setting] : asset_.parameters) fit_.given[name] = setting.value;
   }

@@ -23,12 +23,14 @@ inline constexpr double kChosenBy = 0.9;
 
 class TimeBudget {
  public:
-  TimeBudget(double limit_s, std::stop_token cancel) : limit_s_(limit_s), deadline_(std::move(cancel)) {}
+  /// `used_s`: of the limit, before.
+  TimeBudget(double limit_s, std::stop_token cancel, double used_s = 0.0)
+      : limit_s_(limit_s), used_s_(used_s), deadline_(std::move(cancel)) {}
 
   /// Work may go on until this share of the limit is over.
   void allow(double share) {
     const std::chrono::duration<double> elapsed = Deadline::Clock::now() - begin_;
-    deadline_.set_in(share * limit_s_ - elapsed.count());
+    deadline_.set_in(share * limit_s_ - used_s_ - elapsed.count());
   }
   /// What the report rests on is done whatever time it takes.
   void allow_what_is_needed() { deadline_.set_in(std::numeric_limits<double>::infinity()); }
@@ -47,7 +49,7 @@ class TimeBudget {
   [[nodiscard]] const Deadline& deadline() const { return deadline_; }
 
  private:
-  double limit_s_;
+  double limit_s_, used_s_;
   Deadline deadline_;
   Deadline::Clock::time_point begin_ = Deadline::Clock::now();
   std::vector<std::string> not_asked_;

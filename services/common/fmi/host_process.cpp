@@ -150,7 +150,12 @@ Status HostProcess::request(Operation operation, const char* what, double second
         header_->inside == Operation::begin || operation == Operation::load || operation == Operation::begin;
     const double most = header_->inside == Operation::begin ? limits_.start_s : seconds;
     const double waited = std::chrono::duration<double>(Clock::now() - begin).count();
-    if (unwanted) return fail(end_unwanted(place(what, time_s), waited));
+    if (unwanted) {
+      constexpr double kHangs_s = 2.0;  // no call takes as long, of the thousands that a run makes
+      Error error = end_unwanted(place(what, time_s), waited);
+      if (waited > kHangs_s && header_->inside != Operation::begin) loss_ = Loss{.hung = true, .error = error};
+      return fail(std::move(error));
+    }
     if (starts && !told && waited > limits_.told_s) {
       slow_starts()(file_ + ": waiting for the FMU to start, at most " + std::to_string(std::lround(most)) + " s");
       told = true;

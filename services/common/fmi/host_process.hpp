@@ -85,7 +85,7 @@ class HostProcess {
   [[nodiscard]] Error ended(const std::string& what, int status) const;
   /// Ends a process that has not answered for so long.
   [[nodiscard]] Error end_silent(const std::string& where, double waited_s);
-  /// Ends a process that nobody waits for any more, which is no fault of it.
+  /// Ends a process that nobody waits for any more.
   [[nodiscard]] Error end_unwanted(const std::string& where, double waited_s);
   /// Where a run is, from what the process has written down before it called the binary.
   [[nodiscard]] std::string place(const char* what, double time_s) const;

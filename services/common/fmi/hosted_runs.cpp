@@ -117,6 +117,7 @@ Result<std::unique_ptr<RunProcess>> HostedRuns::take(const RuntimeRun& run) {
 
 Result<SimulatedOutputs> HostedRuns::run(const RuntimeRun& run) {
   if (const auto why_none = lost_.given_up()) return fail(*why_none);
+  if (passed(run.options.deadline)) return fail("the simulation was ended: its time was up");
   auto process = take(run);
   if (!process) return fail(process.error());
   Result<SimulatedOutputs> outputs = (*process)->run(run);

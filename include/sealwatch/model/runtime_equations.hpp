@@ -42,6 +42,8 @@ struct RuntimePoint {
   std::span<const double> input_rates;  ///< slopes of the recorded inputs; 0 where they are held
   std::span<const double> parameters;   ///< in the order of the table; they are the same in all calls of one run
   std::span<const double> added;        ///< e: contribution of the laws at each site, a loss is positive
+  /// Of a run's first point: nothing is asked beyond this time.
+  double last_time_s = std::numeric_limits<double>::infinity();
 };
 
 struct RuntimeMatrix {

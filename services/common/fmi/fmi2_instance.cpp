@@ -93,10 +93,12 @@ class Fmi2Instance final : public FmiInstance {
       check(f_.set_string(instance_, &constant.handle.reference, 1, &text), "fmi2SetString");
     }
   }
-  EventOutcome initialise(double start_time, const Group& parameters, std::span<const double> parameter_values,
-                          const Group& inputs, std::span<const double> input_values) override {
+  EventOutcome initialise(double start_time, double stop_time, const Group& parameters,
+                          std::span<const double> parameter_values, const Group& inputs,
+                          std::span<const double> input_values) override {
     set(parameters, parameter_values);
-    check(f_.setup(instance_, 0, 0.0, start_time, 0, 0.0), "fmi2SetupExperiment");
+    const bool stops = std::isfinite(stop_time);
+    check(f_.setup(instance_, 0, 0.0, start_time, stops ? 1 : 0, stops ? stop_time : 0.0), "fmi2SetupExperiment");
     check(f_.enter_initialization(instance_), "fmi2EnterInitializationMode");
     set(inputs, input_values);
     check(f_.exit_initialization(instance_), "fmi2ExitInitializationMode");

@@ -114,10 +114,13 @@ class Fmi3Instance final : public FmiInstance {
     }
     if (configuring) check(f_.exit_configuration(instance_), "fmi3ExitConfigurationMode");
   }
-  EventOutcome initialise(double start_time, const Group& parameters, std::span<const double> parameter_values,
-                          const Group& inputs, std::span<const double> input_values) override {
+  EventOutcome initialise(double start_time, double stop_time, const Group& parameters,
+                          std::span<const double> parameter_values, const Group& inputs,
+                          std::span<const double> input_values) override {
     set(parameters, parameter_values);
-    check(f_.enter_initialization(instance_, false, 0.0, start_time, false, 0.0), "fmi3EnterInitializationMode");
+    const bool stops = std::isfinite(stop_time);
+    check(f_.enter_initialization(instance_, false, 0.0, start_time, stops, stops ? stop_time : 0.0),
+          "fmi3EnterInitializationMode");
     set(inputs, input_values);
     check(f_.exit_initialization(instance_), "fmi3ExitInitializationMode");
     if (co_simulation_) return {.next_time_s = std::numeric_limits<double>::infinity()};

@@ -76,8 +76,10 @@ class FmiInstance {
   /// Of a new instance.
   virtual void set_constants(std::span<const Constant> constants) = 0;
   /// Initialises with these values, and settles the first event; then it is in continuous-time mode (or ready to step).
-  virtual EventOutcome initialise(double start_time, const Group& parameters, std::span<const double> parameter_values,
-                                  const Group& inputs, std::span<const double> input_values) = 0;
+  /// It will not go beyond the stop time, which is infinite where none is known.
+  virtual EventOutcome initialise(double start_time, double stop_time, const Group& parameters,
+                                  std::span<const double> parameter_values, const Group& inputs,
+                                  std::span<const double> input_values) = 0;
   virtual void set(const Group& group, std::span<const double> values) = 0;
   virtual void get(const Group& group, std::span<double> values) = 0;
   virtual void set_time(double time) = 0;

@@ -40,8 +40,8 @@ struct FmuBlock {
   std::vector<bool> held_inputs;                     ///< of each input: it does not change between samples
   std::vector<double> input_start, parameter_start;  ///< of all elements of the groups, in the FMU's units
   std::vector<double> input_sizes;                   ///< of as many, in their own units: their nominal values
-  double start_time_s = 0.0;
-  HostedPlant plant;  ///< for runs in the process that has the binary
+  double start_time_s = 0.0, stop_time_s = kNoStop;  ///< as the description has them
+  HostedPlant plant;                                 ///< for runs in the process that has the binary
 };
 
 /// With what an instance begins, in SI.

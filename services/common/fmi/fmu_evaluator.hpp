@@ -31,6 +31,7 @@ class RunningBlock {
   /// `starts`: v and q of the run, then those of each direction of differentiation at a step `steps[k]` away.
   [[nodiscard]] static Result<std::unique_ptr<RunningBlock>> begin(const FmuBlock& block,
                                                                    std::shared_ptr<ProcessPool> pool, double time_s,
+                                                                   double last_time_s,
                                                                    const std::vector<BlockStart>& starts,
                                                                    std::vector<double> steps);
   ~RunningBlock();
@@ -57,7 +58,7 @@ class RunningBlock {
   RunningBlock(const FmuBlock& block, std::shared_ptr<ProcessPool> pool, std::vector<double> steps)
       : block_(block), pool_(std::move(pool)), steps_(std::move(steps)) {}
   /// Another process, with these instances.
-  [[nodiscard]] Status begin_process(double time_s, std::span<const BlockStart> starts);
+  [[nodiscard]] Status begin_process(double time_s, double stop_s, std::span<const BlockStart> starts);
   void set_point(std::span<const double> states, std::span<const double> inputs);
   /// A Co-Simulation unit goes on to this time, with inputs that are linear from the last one or held since.
   [[nodiscard]] const BlockValues* step_to(double time_s);

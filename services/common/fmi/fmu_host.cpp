@@ -57,7 +57,7 @@ void FmuHost::serve(Operation operation, std::span<std::byte> heap) {
 }
 
 void FmuHost::begin(Unpacker request, Packer answer) {
-  const auto start_time = request.get<double>();
+  const auto start_time = request.get<double>(), stop_time = request.get<double>();
   state_steps_ = request.list<double>();
   input_steps_ = request.list<double>();
   const std::vector<double> inputs = request.list<double>();
@@ -69,8 +69,8 @@ void FmuHost::begin(Unpacker request, Packer answer) {
     slots_.push_back(make_());
     slots_.back()->set_constants(constants_);
     const EventOutcome its = slots_.back()->initialise(
-        start_time, parameters_, std::span(values).subspan(slot * parameters_.size, parameters_.size), inputs_,
-        std::span(inputs).subspan(slot * inputs_.size, inputs_.size));
+        start_time, stop_time, parameters_, std::span(values).subspan(slot * parameters_.size, parameters_.size),
+        inputs_, std::span(inputs).subspan(slot * inputs_.size, inputs_.size));
     if (slot == 0) outcome = its;
   }
   put_outcome(answer, outcome);

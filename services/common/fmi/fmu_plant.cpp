@@ -163,6 +163,7 @@ class Builder {
     if (!setup) return complain("fmu", setup.error());
     block_.setup = *setup;
     block_.start_time_s = description_->start_time_s.value_or(0.0);
+    block_.stop_time_s = description_->stop_time();
     block_.inputs = ports(inputs, selection.inputs, block_.input_start);
     block_.input_sizes = nominals(selection.inputs);
     block_.parameters = ports(parameters, selection.parameters, block_.parameter_start);

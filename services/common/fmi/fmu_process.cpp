@@ -71,6 +71,7 @@ Result<Beginning> FmuProcess::begin(const Run& run) {
   }
   Packer packer = this->packer();
   packer.put(run.start_time_s);
+  packer.put(run.stop_time_s);
   packer.put_list(run.state_steps);
   packer.put_list(run.input_steps);
   packer.put_list(run.inputs);

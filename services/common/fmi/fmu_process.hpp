@@ -1,6 +1,7 @@
 // What a binary is asked, request by request: values and derivatives together.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -42,6 +43,8 @@ struct CoStepEnd {
   double reached_s = 0.0;
 };
 
+inline constexpr double kNoStop = std::numeric_limits<double>::infinity();  ///< a run that may go on for ever
+
 class FmuProcess : public HostProcess {
  public:
   /// `most_slots`: how many instances a run may have.
@@ -51,6 +54,7 @@ class FmuProcess : public HostProcess {
 
   struct Run {
     double start_time_s = 0.0;
+    double stop_time_s = kNoStop;
     std::span<const double> state_steps, input_steps;  ///< of differences, or larger where a value is
     std::span<const double> inputs;                    ///< at the start, of each slot in turn
     std::size_t slots = 1;

@@ -34,6 +34,7 @@ class UnitStart {
     const std::vector<double> steps(rows_.states.size(), 1e-7), input_steps(inputs.size(), 1e-7);
     const auto begin = [&] {
       return (*process)->begin({.start_time_s = fmu_.start_time_s.value_or(0.0),
+                                .stop_time_s = fmu_.stop_time(),
                                 .state_steps = steps,
                                 .input_steps = input_steps,
                                 .inputs = inputs,
@@ -117,6 +118,7 @@ class UnitStart {
     const std::vector<double> steps(rows_.states.size(), 1e-7), input_steps(input_values.size(), 1e-7);
     return process && (*process)
                           ->begin({.start_time_s = fmu_.start_time_s.value_or(0.0),
+                                   .stop_time_s = fmu_.stop_time(),
                                    .state_steps = steps,
                                    .input_steps = input_steps,
                                    .inputs = input_values,
@@ -169,6 +171,7 @@ class UnitStart {
     const std::vector<double> steps(rows_.states.size(), 1e-7), input_steps(inputs.size(), 1e-7);
     const double time_s = fmu_.start_time_s.value_or(0.0);
     const auto begun = (*process)->begin({.start_time_s = time_s,
+                                          .stop_time_s = fmu_.stop_time(),
                                           .state_steps = steps,
                                           .input_steps = input_steps,
                                           .inputs = inputs,

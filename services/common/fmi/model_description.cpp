@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <limits>
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/core/visible_text.hpp"
@@ -144,6 +145,11 @@ Result<ModelDescription> read_model_description(const std::string& file, std::st
   } catch (const Fault& fault) {
     return fail(fault.error);
   }
+}
+
+double ModelDescription::stop_time() const {
+  const bool sound = stop_time_s && *stop_time_s > start_time_s.value_or(0.0);
+  return sound ? *stop_time_s : std::numeric_limits<double>::infinity();
 }
 
 const Variable* ModelDescription::find(std::string_view variable) const {

@@ -111,6 +111,8 @@ struct ModelDescription {
   std::size_t event_indicators = 0;
   std::optional<double> start_time_s, stop_time_s, step_s;
   /// States and the variables of which their starts depend, by the description (InitialUnknowns); indices of variables.
+  /// Until which a run may go by the description; infinite where it does not say, or one behind the start.
+  [[nodiscard]] double stop_time() const;
   std::map<std::size_t, std::vector<std::size_t>> start_links;
 
   [[nodiscard]] const Variable* find(std::string_view variable) const;

@@ -45,12 +45,16 @@ void ProcessPool::give_back(std::unique_ptr<FmuProcess> process) {
 }
 
 Result<std::unique_ptr<RunningBlock>> RunningBlock::begin(const FmuBlock& block, std::shared_ptr<ProcessPool> pool,
-                                                          double time_s, const std::vector<BlockStart>& starts,
+                                                          double time_s, double last_time_s,
+                                                          const std::vector<BlockStart>& starts,
                                                           std::vector<double> steps) {
   std::unique_ptr<RunningBlock> running(new RunningBlock(block, std::move(pool), std::move(steps)));
   const std::size_t in_one = block.setup.once_per_process != 0 ? 1 : starts.size();
+  // What the unit lays out until its stop time is to last for a recording that is longer than its maker's experiment.
+  const bool both = std::isfinite(block.stop_time_s) && std::isfinite(last_time_s);
+  const double stop_s = both ? std::max(block.stop_time_s, last_time_s) : std::min(block.stop_time_s, last_time_s);
   for (std::size_t first = 0; first < starts.size(); first += in_one)
-    if (const Status begun = running->begin_process(time_s, std::span(starts).subspan(first, in_one)); !begun)
+    if (const Status begun = running->begin_process(time_s, stop_s, std::span(starts).subspan(first, in_one)); !begun)
       return fail(begun.error());
   if (running->beginning_.outcome.terminate) running->end_at(time_s);
   running->inputs_ = block.input_start;
@@ -70,7 +74,7 @@ void append(const std::vector<double>& start, const std::vector<Port>& ports, co
 
 }  // namespace
 
-Status RunningBlock::begin_process(double time_s, std::span<const BlockStart> starts) {
+Status RunningBlock::begin_process(double time_s, double stop_s, std::span<const BlockStart> starts) {
   auto process = pool_->take(block_, starts.size());
   if (!process) return fail(process.error());
   processes_.push_back(std::move(*process));
@@ -83,6 +87,7 @@ Status RunningBlock::begin_process(double time_s, std::span<const BlockStart> st
     append(block_.parameter_start, block_.parameters, start.parameters, parameters);
   }
   auto beginning = processes_.back()->begin({.start_time_s = time_s,
+                                             .stop_time_s = stop_s,
                                              .state_steps = differences,
                                              .input_steps = input_differences,
                                              .inputs = inputs,

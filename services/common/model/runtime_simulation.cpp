@@ -43,6 +43,7 @@ class FirstPoint {
   FirstPoint(const RuntimePlant& plant, const PlantDescription& description, const RecordedInput& input,
              const ModelValues& values)
       : time_s_(input.times().front()),
+        last_time_s_(input.times().back() + longest_step_s(input.times())),  // a step may lead beyond the last sample
         states_(values.initial_state.begin(),
                 values.initial_state.begin() + static_cast<std::ptrdiff_t>(plant.states.size())),
         parameters_(effective_parameters(description, values)),
@@ -58,11 +59,12 @@ class FirstPoint {
             .inputs = inputs_,
             .input_rates = rates_,
             .parameters = parameters_,
-            .added = added_};
+            .added = added_,
+            .last_time_s = last_time_s_};
   }
 
  private:
-  double time_s_;
+  double time_s_, last_time_s_;
   std::vector<double> states_, parameters_, added_, inputs_, rates_;
 };
 

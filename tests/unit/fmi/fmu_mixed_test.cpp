@@ -194,6 +194,21 @@ TEST(FmuTime, IsTheRecordingsInBothInterfaces) {
     }
 }
 
+/// Some cannot do without a stop time. Its maker's experiment ends at 3 s, which is not when a recording does.
+TEST(FmuTime, AUnitKnowsWhenItsRunEnds) {
+  for (const Choice choice : {Choice::model_exchange, Choice::co_simulation})
+    for (const char* binary : {"fmu_mixed_until2", "fmu_mixed_until3"}) {
+      const ImportedUnit unit(mixed(binary), {}, choice);
+      for (const double step_s : {0.1, 2.0}) {
+        const auto simulation = unit.simulation(samples(5, step_s, {"x"}));
+        ASSERT_NE(simulation, nullptr) << binary;
+        const auto outputs = simulation->run(simulation->start(), {});
+        ASSERT_TRUE(outputs) << binary << outputs.error().describe();
+        EXPECT_NEAR(outputs->values(4, 0), 2.0 * std::exp(-4.0 * step_s), 1e-4) << binary;
+      }
+    }
+}
+
 TEST(FmuEnd, OneAtTheLastSampleIsNoFault) {
   for (const Choice choice : {Choice::model_exchange, Choice::co_simulation})
     for (const char* binary : kBinaries) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <sstream>
 
 #include "sealwatch/core/file.hpp"
@@ -67,11 +68,15 @@ class PlantFileWriter {
     return out_.str();
   }
 
-  // Elements of an array are of one size and of either sign.
+  // Of an array whose elements are of both signs, or vanish: as far as its largest, whichever way. Else 0.
   [[nodiscard]] double reach_of_array(const ImportRow& row) const {
-    double size = 0.0;
-    for (std::size_t k = 0; k < fmu_.variables[row.element.variable].size; ++k)
-      size = std::max(size, std::abs(row.scale.to_si(start_.of_parameter(fmu_, {row.element.variable, k}))));
+    double least = std::numeric_limits<double>::infinity(), largest = -least;
+    for (std::size_t k = 0; k < fmu_.variables[row.element.variable].size; ++k) {
+      const double value = row.scale.to_si(start_.of_parameter(fmu_, {row.element.variable, k}));
+      least = std::min(least, value), largest = std::max(largest, value);
+    }
+    if (least > 0.0 || largest < 0.0) return 0.0;
+    const double size = std::max(-least, largest);
     return size == 0.0 ? 1.0 : 10.0 * size;
   }
 
@@ -192,7 +197,8 @@ class PlantFileWriter {
       const double value = row.scale.to_si(start_.of_parameter(fmu_, row.element));
       const double reach = value == 0.0 ? 1.0 : 9.0 * std::abs(value);
       double min = value > 0.0 ? value / 10.0 : value - reach, max = value < 0.0 ? value / 10.0 : value + reach;
-      if (variable.size > 1) max = reach_of_array(row), min = -max;
+      if (const double of_all = variable.size > 1 ? reach_of_array(row) : 0.0; of_all > 0.0)
+        max = of_all, min = -of_all;
       if (variable.min) min = std::max(min, row.scale.to_si(*variable.min));
       if (variable.max) max = std::min(max, row.scale.to_si(*variable.max));
       const bool sound = min <= value && value <= max && min < max;

@@ -97,10 +97,18 @@ TEST(ImportFmu, AStateThatAnInputMovesStartsWhereTheUnitSays) {
                     HasSubstr("v: {variable: \"v\", unit: \"1\", start: \"0.0[1]\"")));
 }
 
-TEST(ImportFmu, ElementsOfAnArrayMayBeOfEitherSignWithinItsSize) {
+TEST(ImportFmu, ElementsOfAnArrayOfOneSignKeepItAsScalarsDo) {
   const TestFolder folder;
-  EXPECT_THAT(imported(folder, arrays()), AllOf(HasSubstr("x0_1: {unit: \"1\", value: 1.0, min: -20.0, max: 20.0"),
-                                                HasSubstr("x0_2: {unit: \"1\", value: 2.0, min: -20.0, max: 20.0")));
+  EXPECT_THAT(imported(folder, arrays()), AllOf(HasSubstr("x0_1: {unit: \"1\", value: 1.0, min: 0.1, max: 10.0"),
+                                                HasSubstr("x0_2: {unit: \"1\", value: 2.0, min: 0.2, max: 20.0")));
+}
+
+TEST(ImportFmu, ElementsOfAnArrayOfBothSignsMayBeOfEitherWithinItsSize) {
+  const TestFolder folder;
+  TestUnit unit = arrays();
+  unit.variables.replace(unit.variables.find("start=\"1 2\""), 11, "start=\"1 -2\"");
+  EXPECT_THAT(imported(folder, unit), AllOf(HasSubstr("x0_1: {unit: \"1\", value: 1.0, min: -20.0, max: 20.0"),
+                                            HasSubstr("x0_2: {unit: \"1\", value: -2.0, min: -20.0, max: 20.0")));
 }
 
 TEST(ImportFmu, OfThousandsOfParametersSomeAreListedAndTheRestCounted) {

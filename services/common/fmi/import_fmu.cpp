@@ -33,8 +33,13 @@ std::string in_comment(std::string text) {
 
 class PlantFileWriter {
  public:
-  PlantFileWriter(const FmuFile& file, const std::string& path, ImportRows rows, ImportStart start)
-      : file_(file), fmu_(file.description()), path_(path), rows_(std::move(rows)), start_(std::move(start)) {}
+  PlantFileWriter(const FmuFile& file, const std::string& path, ImportRows rows, ImportStart start, std::string by_name)
+      : file_(file),
+        fmu_(file.description()),
+        path_(path),
+        rows_(std::move(rows)),
+        start_(std::move(start)),
+        by_name_(std::move(by_name)) {}
 
   Result<std::string> write() {
     for (const std::size_t most : {kMostListed, kMostInForce})
@@ -80,6 +85,14 @@ class PlantFileWriter {
     return size == 0.0 ? 1.0 : 10.0 * size;
   }
 
+  // Behind a row whose unit stayed unknown.
+  [[nodiscard]] std::string unit_asked_for(const ImportRow& row) const {
+    const Variable& variable = fmu_.variables[row.element.variable];
+    if (variable.unit.empty() || variable.unit == "-" || fmu_.si_unit_of(variable)) return "";
+    return "  # unit: the FMU does not define its " + in_comment(text::quoted(variable.unit)) +
+           "; give what it is in SI";
+  }
+
   void head() {
     const std::string version = fmu_.version == Version::fmi2 ? "FMI 2.0" : "FMI 3.0";
     out_ << "# A plant for sealwatch around the FMU " << in_comment(path_) << " (" << version << ", "
@@ -88,6 +101,9 @@ class PlantFileWriter {
          << "# Written by `sealwatch plant import`; complete what the comments ask for, then `sealwatch plant check` "
             "it.\n"
          << "# All units are SI: the FMU's own are converted.\n";
+    if (!by_name_.empty())
+      out_ << "# The FMU names these units and does not define them; each is taken as what its name is: "
+           << in_comment(by_name_) << "\n";
     if (file_.interface().needs_execution_tool)
       out_ << "# It runs only where " << (fmu_.tool.empty() ? "the tool that made it" : in_comment(fmu_.tool))
            << " is installed (needsExecutionTool).\n";
@@ -164,7 +180,7 @@ class PlantFileWriter {
     list(rows_.inputs, "  ", [&](const ImportRow& row) {
       out_ << row.name << ": {unit: " << text::quoted(row.unit)
            << (changes_between_events(fmu_.variables[row.element.variable]) ? "" : ", course: held")
-           << ", meaning: " << text::quoted(row.meaning) << "}";
+           << ", meaning: " << text::quoted(row.meaning) << "}" << unit_asked_for(row);
     });
     count_rest(rows_.inputs, "fmu.inputs");
     out_ << "\n# Recorded outputs. Rename them to the recording's columns, delete those that are not recorded.\n"
@@ -172,7 +188,7 @@ class PlantFileWriter {
             "outputs:\n";
     list(rows_.outputs, "  ", [&](const ImportRow& row) {
       out_ << row.channel << ": {unit: " << text::quoted(row.unit) << ", value: " << shown(row)
-           << ", meaning: " << text::quoted(row.meaning) << "}";
+           << ", meaning: " << text::quoted(row.meaning) << "}" << unit_asked_for(row);
     });
     count_rest(rows_.outputs, "fmu.variables");
     if (rows_.outputs.empty())
@@ -205,7 +221,7 @@ class PlantFileWriter {
       if (!sound) min = value - reach, max = value + reach;
       out_ << row.name << ": {unit: " << text::quoted(row.unit) << ", value: " << number(value)
            << ", min: " << number(min) << ", max: " << number(max)
-           << ", estimate: false, meaning: " << text::quoted(row.meaning) << "}";
+           << ", estimate: false, meaning: " << text::quoted(row.meaning) << "}" << unit_asked_for(row);
     });
     count_rest(rows_.parameters, "fmu.parameters");
   }
@@ -230,7 +246,7 @@ class PlantFileWriter {
            << ", start: " << (start_.linked[k] ? kStartOfFmu : start_of(row, start))
            << ", size: " << number(usual ? nominal : 1.0)
            << ", own: " << (!start_.linked[k] && shown_by_output(row) ? "true" : "false")
-           << ", meaning: " << text::quoted(row.meaning) << "}\n";
+           << ", meaning: " << text::quoted(row.meaning) << "}" << unit_asked_for(row) << "\n";
     }
   }
 
@@ -275,6 +291,7 @@ class PlantFileWriter {
   const std::string& path_;
   ImportRows rows_;
   ImportStart start_;
+  std::string by_name_;     ///< units that are taken by their names
   std::size_t listed_ = 0;  ///< rows of each group, at most
   std::ostringstream out_;
 };
@@ -295,7 +312,8 @@ Result<std::string> plant_file_of(const FmuFile& file, const std::string& path, 
   variables.erase(std::ranges::unique(variables).begin(), variables.end());
   if (const std::string undefined = undefined_units(file.description(), variables); !undefined.empty())
     options.tell(undefined + ": " + kUndefinedUnits);
-  return PlantFileWriter(file, path, std::move(rows), std::move(*start)).write();
+  return PlantFileWriter(file, path, std::move(rows), std::move(*start), units_by_name(file.description(), variables))
+      .write();
 }
 
 }  // namespace sealwatch::fmi

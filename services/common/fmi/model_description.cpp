@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <limits>
+#include <set>
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/core/visible_text.hpp"
@@ -93,6 +94,19 @@ std::optional<std::size_t> element_at(std::string_view indices, const std::vecto
   return extents.empty() ? std::nullopt : std::optional(element);
 }
 
+void name_units(ModelDescription& description) {
+  std::set<std::string> names;
+  for (const Variable& variable : description.variables) names.insert(variable.unit);
+  for (const std::string& name : names) {
+    const auto unit = std::ranges::find(description.units, name, &Unit::name);
+    if (name.empty() || (unit != description.units.end() && unit->has_base)) continue;
+    if (unit == description.units.end())
+      description.units.push_back({.name = name, .by_name = unit_by_name(name)});
+    else
+      unit->by_name = unit_by_name(name);
+  }
+}
+
 ModelDescription read_root(const DescriptionReader& reader, const pugi::xml_node& root, const Settings& settings) {
   if (!root) reader.refuse(root, {}, "has no element fmiModelDescription");
   ModelDescription description;
@@ -116,6 +130,7 @@ ModelDescription read_root(const DescriptionReader& reader, const pugi::xml_node
   description.units = read_units(reader, root);
   read_experiment(reader, root.child("DefaultExperiment"), description);
   fmi2 ? read_fmi2(reader, root, description) : read_fmi3(reader, root, description, settings);
+  name_units(description);
   description.structure_is_empty = root.child("ModelStructure").first_child().empty();
   check(reader, root, description);
   return description;
@@ -164,7 +179,10 @@ const Unit* ModelDescription::find_unit(std::string_view unit) const {
 
 std::optional<SiUnit> ModelDescription::si_unit_of(const Variable& variable) const {
   const Unit* unit = find_unit(variable.unit);
-  if (unit == nullptr || !unit->has_base) return std::nullopt;
+  if (unit == nullptr || !(unit->has_base || unit->by_name)) return std::nullopt;
+  if (!unit->has_base)
+    return SiUnit{unit->by_name->name,
+                  {unit->by_name->conversion.factor, variable.relative ? 0.0 : unit->by_name->conversion.offset}};
   return SiUnit{si_name(*unit), {unit->factor, variable.relative ? 0.0 : unit->offset}};
 }
 

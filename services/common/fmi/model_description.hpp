@@ -37,18 +37,19 @@ struct Conversion {
   [[nodiscard]] double from_si(double value) const { return (value - offset) / factor; }
 };
 
+/// By its usual name, and the way to it.
+struct SiUnit {
+  std::string name;
+  Conversion conversion;
+};
+
 struct Unit {
   std::string name;  ///< "N.m", as the FMU writes it
   bool has_base = false;
   BaseExponents exponents{};
   double factor = 1.0;
   double offset = 0.0;
-};
-
-/// By its usual name, and the way to it.
-struct SiUnit {
-  std::string name;
-  Conversion conversion;
+  std::optional<SiUnit> by_name = {};  ///< where the description does not define it, and its name is a unit's
 };
 
 /// Of an enumeration.
@@ -110,9 +111,9 @@ struct ModelDescription {
   bool structure_is_empty = false;   ///< it names no variable at all
   std::size_t event_indicators = 0;
   std::optional<double> start_time_s, stop_time_s, step_s;
-  /// States and the variables of which their starts depend, by the description (InitialUnknowns); indices of variables.
   /// Until which a run may go by the description; infinite where it does not say, or one behind the start.
   [[nodiscard]] double stop_time() const;
+  /// States and the variables of which their starts depend, by the description (InitialUnknowns); indices of variables.
   std::map<std::size_t, std::vector<std::size_t>> start_links;
 
   [[nodiscard]] const Variable* find(std::string_view variable) const;
@@ -141,6 +142,11 @@ inline constexpr const char* kUndefinedUnits =
     "the FMU does not define these units, so that its numbers are taken as they are; where those are no SI, convert "
     "them "
     "in the plant file's expressions, as in 1e5[Pa]*p";
+
+/// Those whose unit is taken by its name, as undefined_units() writes them.
+[[nodiscard]] std::string units_by_name(const ModelDescription& description, const std::vector<std::size_t>& variables);
+/// What a unit is that the description names without a definition, as tools do: "N", "kN/m", "degC".
+[[nodiscard]] std::optional<SiUnit> unit_by_name(const std::string& name);
 
 /// SI unit by its usual name ("N m"), or put together ("kg m2/s3"); "1" where the unit says nothing.
 [[nodiscard]] std::string si_name(const Unit& unit);

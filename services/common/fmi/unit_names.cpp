@@ -64,15 +64,11 @@ const char* angular_name(const Unit& unit) {
 
 }  // namespace
 
-std::string undefined_units(const ModelDescription& description, const std::vector<std::size_t>& variables) {
+namespace {
+
+/// "bar (p_1, p_2), min (tau)"
+std::string listed(std::map<std::string, std::vector<std::string>> uses) {
   constexpr std::size_t kMostNamed = 4, kMostUnits = 10;
-  std::map<std::string, std::vector<std::string>> uses;
-  for (const std::size_t k : variables) {
-    const Variable& variable = description.variables[k];
-    if (variable.unit.empty() || variable.unit == "-" || description.si_unit_of(variable)) continue;
-    const Result<equations::Dimension> own = equations::find_dimension(variable.unit);
-    if (!own || own->scale != 1.0) uses[variable.unit].push_back(variable.name);
-  }
   std::string list;
   std::size_t units = 0;
   for (auto& [unit, names] : uses) {
@@ -83,6 +79,46 @@ std::string undefined_units(const ModelDescription& description, const std::vect
     text::add_to_list(list, unit + " (" + text::joined(names) + ")");
   }
   return list + (uses.size() > kMostUnits ? " and " + std::to_string(uses.size() - kMostUnits) + " more" : "");
+}
+
+}  // namespace
+
+std::string undefined_units(const ModelDescription& description, const std::vector<std::size_t>& variables) {
+  std::map<std::string, std::vector<std::string>> uses;
+  for (const std::size_t k : variables) {
+    const Variable& variable = description.variables[k];
+    if (!variable.unit.empty() && variable.unit != "-" && !description.si_unit_of(variable))
+      uses[variable.unit].push_back(variable.name);
+  }
+  return listed(std::move(uses));
+}
+
+std::string units_by_name(const ModelDescription& description, const std::vector<std::size_t>& variables) {
+  std::map<std::string, std::vector<std::string>> uses;
+  for (const std::size_t k : variables)
+    if (const Unit* unit = description.find_unit(description.variables[k].unit);
+        unit != nullptr && !unit->has_base && unit->by_name && unit->name != "1")
+      uses[unit->name].push_back(description.variables[k].name);
+  return listed(std::move(uses));
+}
+
+// The angle is kept where the known names keep it. What is a unit of SI with its prefix is that, whatever logs mean by
+// the same letters: MA are a million amperes, C a coulomb.
+std::optional<SiUnit> unit_by_name(const std::string& name) {
+  std::optional<SiUnit> known;
+  if (name.empty() || name == "-") return known;
+  for (auto unit = kKnown.begin(); !known && unit != kKnown.end(); ++unit)
+    if (const auto found = convert_unit(name, unit->name)) known = SiUnit{unit->name, {found->scale, found->offset}};
+  const Result<equations::Dimension> own = equations::find_dimension(name);
+  if (!own) return known;
+  constexpr double kRounding = 1e-9;
+  const auto there = known ? equations::find_dimension(known->name) : own;
+  const bool same = known && there && *own == *there && known->conversion.offset == 0.0 &&
+                    std::abs(known->conversion.factor / own->scale - 1.0) < kRounding;
+  if (same) return known;
+  equations::Dimension si = *own;
+  si.scale = 1.0;
+  return SiUnit{equations::words_of(si), {own->scale, 0.0}};
 }
 
 std::string si_name(const Unit& unit) {

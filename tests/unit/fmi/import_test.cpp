@@ -263,10 +263,42 @@ TEST(ImportFmu, UnitsThatAreNotDefinedAreNamed) {
   const auto put = [&](const std::string& before, const std::string& text) {
     unit.variables.insert(unit.variables.find(before), text + " ");
   };
-  put("start=\"20\"", "unit=\"t\""), put("start=\"2e3\"", "unit=\"N.s/m\""), put("start=\"1e4\"", "unit=\"kN/m\"");
+  put("start=\"20\"", "unit=\"Stueck\""), put("start=\"2e3\"", "unit=\"N.s/m\"");
   std::string text;
-  EXPECT_THAT(told_of(folder, unit, text), AllOf(HasSubstr("kN/m (k_s), t (M): the FMU does not define these units"),
+  EXPECT_THAT(told_of(folder, unit, text), AllOf(HasSubstr("Stueck (M): the FMU does not define these units"),
                                                  HasSubstr("1e5[Pa]*p"), Not(HasSubstr("N.s/m"))));
+  EXPECT_THAT(text, HasSubstr("meaning: \"M [Stueck]\"}  # unit: the FMU does not define its \"Stueck\"; give what"));
+}
+
+/// Tools that have no unit definitions name their units all the same.
+TEST(ImportFmu, UnitsThatAreNotDefinedAreTakenByTheirNames) {
+  const TestFolder folder;
+  TestUnit unit = spring_return("fmu_spring_return2");
+  const auto put = [&](const std::string& before, const std::string& text) {
+    unit.variables.insert(unit.variables.find(before), text + " ");
+  };
+  put("start=\"20\"", "unit=\"t\""), put("start=\"2e3\"", "unit=\"N*s/m\""), put("start=\"1e4\"", "unit=\"kN/m\"");
+  std::string text;
+  EXPECT_EQ(told_of(folder, unit, text), "");
+  EXPECT_THAT(text,
+              AllOf(HasSubstr("does not define them; each is taken as what its name is: N*s/m (F_v), kN/m (k_s)"),
+                    HasSubstr("M: {unit: \"kg\", value: 20000.0"), HasSubstr("F_v: {unit: \"N s/m\", value: 2000.0"),
+                    HasSubstr("k_s: {unit: \"N/m\", value: 1e+07"), HasSubstr("meaning: \"k_s\"}\n")));
+}
+
+TEST(ImportFmu, ANameOfAUnitIsWhatEngineersMeanByIt) {
+  const auto is = [](const char* name, const char* si, double factor, double offset) {
+    const auto unit = unit_by_name(name);
+    ASSERT_TRUE(unit) << name;
+    EXPECT_EQ(unit->name, si) << name;
+    EXPECT_NEAR(unit->conversion.factor / factor, 1.0, 1e-6) << name;
+    EXPECT_NEAR(unit->conversion.offset, offset, 1e-9) << name;
+  };
+  is("N", "N", 1.0, 0.0), is("Nm", "N m", 1.0, 0.0), is("degC", "K", 1.0, 273.15), is("rpm", "rad/s", 0.104719755, 0.0);
+  is("rad/s", "rad/s", 1.0, 0.0), is("deg", "rad", 0.0174532925, 0.0), is("bar", "Pa", 1e5, 0.0);
+  is("MV", "V", 1e6, 0.0), is("m/s^2", "m/s2", 1.0, 0.0), is("l/min", "m3/s", 1e-3 / 60.0, 0.0),
+      is("%", "1", 0.01, 0.0);
+  for (const char* name : {"", "-", "Stueck", "foo/bar"}) EXPECT_FALSE(unit_by_name(name)) << name;
 }
 
 TEST(ImportFmu, AUnitTakenForCoSimulationIsToldOfItsOtherInterface) {

@@ -56,6 +56,9 @@ struct DeclaredType {
 using DeclaredTypes = std::map<std::string, DeclaredType>;
 
 /// Variables and structure of each version; the rest is common (model_description.cpp).
+/// In which a description is written.
+[[nodiscard]] pugi::xml_encoding encoding_of(std::string_view text);
+
 void read_fmi2(const DescriptionReader& reader, const pugi::xml_node& root, ModelDescription& description);
 void read_fmi3(const DescriptionReader& reader, const pugi::xml_node& root, ModelDescription& description,
                const Settings& settings);

@@ -138,13 +138,17 @@ ModelDescription read_root(const DescriptionReader& reader, const pugi::xml_node
 
 }  // namespace
 
+// Of eight bits and no UTF-8, whatever it says: Windows' own page is Latin-1 but for a few signs.
+pugi::xml_encoding encoding_of(std::string_view text) {
+  const bool latin = !is_valid_utf8(text) && text.find('\0') == std::string_view::npos;
+  return latin ? pugi::encoding_latin1 : pugi::encoding_auto;
+}
+
 Result<ModelDescription> read_model_description(const std::string& file, std::string_view text,
                                                 const Settings& settings) {
   pugi::xml_document document;
-  // Of eight bits and no UTF-8, whatever it says: Windows' own page is Latin-1 but for a few signs.
-  const bool latin = !is_valid_utf8(text) && text.find('\0') == std::string_view::npos;
-  const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size(), pugi::parse_default,
-                                                             latin ? pugi::encoding_latin1 : pugi::encoding_auto);
+  const pugi::xml_parse_result parsed =
+      document.load_buffer(text.data(), text.size(), pugi::parse_default, encoding_of(text));
   const DescriptionReader reader(file, text);
   try {
     if (!parsed) {

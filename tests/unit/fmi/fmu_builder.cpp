@@ -47,7 +47,7 @@ void write_archive(const std::filesystem::path& file, const std::vector<TestMemb
 
 std::string description_of(const TestUnit& unit) {
   const std::string directional = unit.directional ? "true" : "false";
-  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription ";
+  std::string text = "<?xml version=\"1.0\" encoding=\"" + unit.encoding + "\"?>\n<fmiModelDescription ";
   const std::string version = !unit.version.empty() ? unit.version : is_fmi3(unit) ? "3.0" : "2.0";
   text += "fmiVersion=\"" + version + (is_fmi3(unit) ? "\" instantiationToken=\"" : "\" guid=\"");
   text += unit.token + "\" modelName=\"test\" generationTool=\"the tests\"";

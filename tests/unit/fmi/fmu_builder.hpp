@@ -24,10 +24,11 @@ struct TestUnit {
   std::string token = "{sealwatch-test-spring-return}";
   bool directional = false;
   int indicators = 0;
-  std::string variables;     ///< XML between <ModelVariables> and its end; "": those of spring_return
-  std::string structure;     ///< XML between <ModelStructure> and its end
-  std::string interfaces;    ///< XML of the interfaces; "": Model Exchange
-  std::string version;       ///< "": 2.0 or 3.0
+  std::string variables;   ///< XML between <ModelVariables> and its end; "": those of spring_return
+  std::string structure;   ///< XML between <ModelStructure> and its end
+  std::string interfaces;  ///< XML of the interfaces; "": Model Exchange
+  std::string version;     ///< "": 2.0 or 3.0
+  std::string encoding = "UTF-8";
   std::string library = {};  ///< beside the binary: "libfmu_gain_library.so"
 };
 [[nodiscard]] std::string description_of(const TestUnit& unit);

@@ -463,6 +463,16 @@ TEST(ExplainedFmu, AsksForARateOnlyWhereALawNeedsIt) {
   expect_same(without, "position", "position", 1e-8);
 }
 
+TEST(ExplainedFmu, WhatTheUnitWroteInAnotherEncodingIsReadAgain) {
+  TestUnit unit = spring_return("fmu_spring_return2");
+  unit.encoding = "ISO-8859-1";
+  unit.variables.insert(unit.variables.find("start=\"20\""), "quantity=\"Masse\" ");
+  unit.variables.replace(unit.variables.find("name=\"M\""), 8, "name=\"M\" description=\"K\xf6rper\"");
+  const Exported exported(unit, spring("drive_voltage - u_lost", "k_s"), [](AssetConfig&) {});
+  ASSERT_EQ(exported.refusal(), "");
+  EXPECT_THAT(exported.text(), HasSubstr("meaning: \"K\u00f6rper\""));
+}
+
 TEST(ExplainedFmu, AUnitThatCannotBeWrappedIsRefusedByName) {
   const auto refusal = [](const TestUnit& unit, const std::string& plant) {
     return Exported(unit, plant, [](AssetConfig&) {}).refusal();

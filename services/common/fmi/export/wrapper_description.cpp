@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "services/common/fmi/description_reader.hpp"
 #include "services/common/fmi/export/c_expressions.hpp"
 #include "services/common/fmi/export/laws_function.hpp"
 
@@ -35,7 +36,7 @@ class Rewriter {
     std::ifstream stream(inner_.unpacked().path_of(kDescriptionName), std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     pugi::xml_document document;
-    if (!document.load_buffer(text.data(), text.size(), pugi::parse_full))
+    if (!document.load_buffer(text.data(), text.size(), pugi::parse_full, encoding_of(text)))
       return fail(
           Error{.file = inner_.name(), .place = kDescriptionName, .value = {}, .rule = "is not XML", .advice = {}});
     root_ = document.child("fmiModelDescription");
@@ -48,6 +49,8 @@ class Rewriter {
     units();
     change_variables();
     add_variables();
+    if (xml_node declaration = document.first_child(); declaration.type() == pugi::node_declaration)
+      set(declaration, "encoding", "UTF-8");  // whatever it was: save() writes that
     std::ostringstream out;
     document.save(out, "  ");
     return out.str();

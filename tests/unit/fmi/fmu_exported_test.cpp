@@ -495,6 +495,19 @@ parameters:
   TestUnit wide = mixed("fmu_mixed3");
   wide.variables.replace(wide.variables.find("<Int32 name=\"u_integer\""), 6, "<Int64");
   EXPECT_THAT(refusal(wide, typed_plant()), AllOf(HasSubstr("u_integer"), HasSubstr("int64")));
+  EXPECT_THAT(refusal(arrays(), R"yaml(
+meaning: an array of states
+fmu:
+  file: model.fmu
+  variables: {y: {variable: y, unit: "1"}}
+outputs:
+  y: {value: y, unit: "1"}
+states:
+  x_1: {variable: "x[1]", unit: "1", start: "1[1]", size: 1.0, own: false}
+  x_2: {variable: "x[2]", unit: "1", start: "2[1]", size: 1.0, own: false}
+)yaml"),
+              AllOf(HasSubstr("has an array, around which sealwatch writes no FMU: x"),
+                    HasSubstr("export the model as FMI 2.0"), testing::Not(HasSubstr("leave it out"))));
 }
 
 }  // namespace

@@ -34,8 +34,7 @@ class WrapperExporter {
                     std::string(inner.offers_exchange ? "take `interface: me` in its plant file"
                                                       : "export the model for Model Exchange from its tool") +
                         "; laws.c and laws.mo have the laws");
-    if (const std::string fault = fault_of_types(); !fault.empty())
-      return refuse(fault, "leave it out of the plant file, or export the model as FMI 2.0 from its tool");
+    if (const auto [fault, advice] = fault_of_types(); !fault.empty()) return refuse(fault, advice);
     auto terms = resolve_physics(plant_.description, plant_.description.sites, asset_);
     if (!terms) return fail(terms.error());
     terms_ = std::move(*terms);
@@ -74,9 +73,16 @@ class WrapperExporter {
   }
 
   /// FMI 3.0 has more types and arrays; what goes in and out of the plant is to be what FMI 2.0 has too.
-  [[nodiscard]] std::string fault_of_types() const {
+  /// And what to do: a state cannot be left out, nor can what is set.
+  struct Refused {
+    std::string fault, advice;
+  };
+  [[nodiscard]] Refused fault_of_types() const {
     const ModelDescription& inner = block_.file->description();
-    if (inner.version != Version::fmi3) return "";
+    if (inner.version != Version::fmi3) return {};
+    const std::string again =
+        "export the model as FMI 2.0 from its tool, where arrays are single variables; the report's "
+        "laws.c and laws.mo have the laws for the model itself";
     const auto fault = [](const Variable& variable, bool text_too) -> std::string {
       if (variable.size != 1) return "has an array, around which sealwatch writes no FMU: " + variable.name;
       const bool plain = variable.type == FmiType::float64 || variable.type == FmiType::int32 ||
@@ -89,11 +95,14 @@ class WrapperExporter {
          {&block_.setup.states, &block_.setup.parameters, &block_.setup.inputs, &block_.setup.outputs})
       for (const Handle& handle : *handles) {
         const auto variable = std::ranges::find(inner.variables, handle.reference, &Variable::reference);
-        if (std::string found = fault(*variable, false); !found.empty()) return found;
+        const std::string found = fault(*variable, false);
+        if (found.empty()) continue;
+        return {found, handles == &block_.setup.states ? again : "leave it out of the plant file, or else " + again};
       }
     for (const auto& [name, value] : block_.file->settings())
-      if (std::string found = fault(*inner.find(name), true); !found.empty()) return found;
-    return "";
+      if (std::string found = fault(*inner.find(name), true); !found.empty())
+        return {found, "leave it out of the settings, or else " + again};
+    return {};
   }
 
   // References of what the other unit does not have, in the order in which fmi2_wrapper.c numbers them.

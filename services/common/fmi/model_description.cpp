@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <limits>
 #include <set>
 
 #include "sealwatch/core/text.hpp"
@@ -167,8 +166,9 @@ Result<ModelDescription> read_model_description(const std::string& file, std::st
 }
 
 double ModelDescription::stop_time() const {
-  const bool sound = stop_time_s && *stop_time_s > start_time_s.value_or(0.0);
-  return sound ? *stop_time_s : std::numeric_limits<double>::infinity();
+  constexpr double kShort_s = 1.0;  // as other tools take it: some units cannot do without one
+  const double start_s = start_time_s.value_or(0.0);
+  return stop_time_s && *stop_time_s > start_s ? *stop_time_s : start_s + kShort_s;
 }
 
 const Variable* ModelDescription::find(std::string_view variable) const {

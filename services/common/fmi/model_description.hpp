@@ -111,7 +111,7 @@ struct ModelDescription {
   bool structure_is_empty = false;   ///< it names no variable at all
   std::size_t event_indicators = 0;
   std::optional<double> start_time_s, stop_time_s, step_s;
-  /// Until which a run may go by the description; infinite where it does not say, or one behind the start.
+  /// Until which a unit is to lay out what has no recording: the description's, or shortly behind the start.
   [[nodiscard]] double stop_time() const;
   /// States and the variables of which their starts depend, by the description (InitialUnknowns); indices of variables.
   std::map<std::size_t, std::vector<std::size_t>> start_links;

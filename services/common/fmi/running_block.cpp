@@ -51,8 +51,7 @@ Result<std::unique_ptr<RunningBlock>> RunningBlock::begin(const FmuBlock& block,
   std::unique_ptr<RunningBlock> running(new RunningBlock(block, std::move(pool), std::move(steps)));
   const std::size_t in_one = block.setup.once_per_process != 0 ? 1 : starts.size();
   // What the unit lays out until its stop time is to last for a recording that is longer than its maker's experiment.
-  const bool both = std::isfinite(block.stop_time_s) && std::isfinite(last_time_s);
-  const double stop_s = both ? std::max(block.stop_time_s, last_time_s) : std::min(block.stop_time_s, last_time_s);
+  const double stop_s = std::isfinite(last_time_s) ? std::max(block.stop_time_s, last_time_s) : block.stop_time_s;
   for (std::size_t first = 0; first < starts.size(); first += in_one)
     if (const Status begun = running->begin_process(time_s, stop_s, std::span(starts).subspan(first, in_one)); !begun)
       return fail(begun.error());

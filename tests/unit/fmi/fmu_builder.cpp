@@ -61,7 +61,7 @@ std::string description_of(const TestUnit& unit) {
       "<Unit name=\"degC\"><BaseUnit K=\"1\" offset=\"273.15\"/></Unit>"
       "<Unit name=\"N\"><BaseUnit kg=\"1\" m=\"1\" s=\"-2\"/></Unit>"
       "<Unit name=\"m\"><BaseUnit m=\"1\"/></Unit></UnitDefinitions>\n";
-  text += "<DefaultExperiment startTime=\"0\" stopTime=\"3\"/>\n";
+  text += "<DefaultExperiment startTime=\"0\" " + unit.experiment + "/>\n";
   text += "<ModelVariables>\n" + unit.variables + "</ModelVariables>\n";
   text += "<ModelStructure>\n" + unit.structure + "</ModelStructure>\n</fmiModelDescription>\n";
   return text;

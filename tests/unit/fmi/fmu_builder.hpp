@@ -29,7 +29,8 @@ struct TestUnit {
   std::string interfaces;  ///< XML of the interfaces; "": Model Exchange
   std::string version;     ///< "": 2.0 or 3.0
   std::string encoding = "UTF-8";
-  std::string library = {};  ///< beside the binary: "libfmu_gain_library.so"
+  std::string experiment = "stopTime=\"3\"";  ///< attributes of <DefaultExperiment>
+  std::string library = {};                   ///< beside the binary: "libfmu_gain_library.so"
 };
 [[nodiscard]] std::string description_of(const TestUnit& unit);
 [[nodiscard]] TestUnit spring_return(const std::string& binary);

@@ -41,6 +41,7 @@ class Builder {
     if (!sound_) return std::nullopt;
     write_frame();
     check_inputs();
+    check_parameters();
     auto built = equations::build_plant(frame_, [&](const std::string& key, const Error& error) {
       const auto of = keys_.find(key.substr(0, key.rfind('.')));
       complain(of == keys_.end() ? key : of->second, error);
@@ -197,6 +198,25 @@ class Builder {
         complain("fmu.parameters." + description_->name_of(element),
                  fault(of.name, "has no start value in the description, and not all of its elements are given",
                        "give all " + std::to_string(of.size)));
+    }
+  }
+
+  // They are set once, with recorded inputs at their first sample: what the FMU itself gives is not known there.
+  void check_parameters() {
+    equations::Expressions expressions;
+    const equations::Faults quiet = [](const std::string&, const Error&) {};
+    equations::PlantNames names(frame_, expressions, quiet);
+    const equations::VariablePlaces places = names.places();
+    for (const auto& [name, value] : section_.parameters) {
+      const auto formula = equations::understand(value, expressions, names);
+      if (!formula) continue;  // told by the frame
+      const std::vector<bool> used = expressions.variables_of(std::array{formula->node}, places.count);
+      if (std::find(used.begin() + static_cast<std::ptrdiff_t>(places.added), used.end(), true) == used.end()) continue;
+      complain(
+          "fmu.parameters." + name,
+          fault(value, "is set once, before the FMU has values of its own or a law adds anything",
+                "use parameters and inputs of this file; for a start that each recording has of its own, record it "
+                "as an input too (the channel's column under a second name), whose first value is taken"));
     }
   }
 

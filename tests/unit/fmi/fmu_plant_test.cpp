@@ -257,6 +257,28 @@ TEST(FmuPlant, AnItemOfAnEnumerationIsSetByItsName) {
   EXPECT_EQ(wrong.error().place, "setting body.mode");
 }
 
+/// They are set once, before the unit has values: what it would give there is no number of its own.
+TEST(FmuPlant, AParameterThatTheUnitsOwnOutputSetsIsRefused) {
+  const TestFolder folder;
+  static_cast<void>(folder.build(gain()));
+  const auto plant = load_plant(written(folder, R"yaml(name: sets_itself
+meaning: a gain
+fmu:
+  file: model.fmu
+  inputs: {u: u}
+  parameters: {k: 2 * x}
+  variables: {x: {variable: x, unit: "1"}}
+inputs:
+  u: {unit: "1", meaning: u}
+outputs:
+  x: {value: x, unit: "1", meaning: x}
+)yaml"));
+  ASSERT_FALSE(plant);
+  EXPECT_THAT(plant.error().front().describe(),
+              testing::AllOf(HasSubstr("fmu.parameters.k"), HasSubstr("2 * x"), HasSubstr("before the FMU has values"),
+                             HasSubstr("record it as an input too")));
+}
+
 TEST(FmuPlant, OneThatLiesAboutItsDerivativesIsRefused) {
   const TestFolder folder;
   TestUnit unit = spring_return("fmu_spring_lying2");

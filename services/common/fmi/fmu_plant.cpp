@@ -212,11 +212,10 @@ class Builder {
       if (!formula) continue;  // told by the frame
       const std::vector<bool> used = expressions.variables_of(std::array{formula->node}, places.count);
       if (std::find(used.begin() + static_cast<std::ptrdiff_t>(places.added), used.end(), true) == used.end()) continue;
-      complain(
-          "fmu.parameters." + name,
-          fault(value, "is set once, before the FMU has values of its own or a law adds anything",
-                "use parameters and inputs of this file; for a start that each recording has of its own, record it "
-                "as an input too (the channel's column under a second name), whose first value is taken"));
+      complain("fmu.parameters." + name,
+               fault(value, "is set once, before the FMU has values of its own or a law adds anything",
+                     "use parameters and inputs of this file; for a start that each recording has of its own give the "
+                     "recordings a column with it, as an input, whose first value is taken"));
     }
   }
 

@@ -276,7 +276,7 @@ outputs:
   ASSERT_FALSE(plant);
   EXPECT_THAT(plant.error().front().describe(),
               testing::AllOf(HasSubstr("fmu.parameters.k"), HasSubstr("2 * x"), HasSubstr("before the FMU has values"),
-                             HasSubstr("record it as an input too")));
+                             HasSubstr("a column with it, as an input")));
 }
 
 TEST(FmuPlant, OneThatLiesAboutItsDerivativesIsRefused) {

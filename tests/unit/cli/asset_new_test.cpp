@@ -226,8 +226,7 @@ TEST_F(AssetNew, OfALogWithManyColumnsSomeAreNamed) {
   for (int k = 0; k < 200; ++k) header += ",Ei" + std::to_string(k) + " [mm/kg]", row += ",1";
   ::testing::internal::CaptureStderr();
   EXPECT_EQ(make((header + "\n" + row + "\n").c_str()), kBadInput);
-  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
-              ::testing::HasSubstr("Ei28 [mm/kg], and 171 more"));
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), ::testing::HasSubstr("Ei28 [mm/kg], and 171 more"));
 }
 
 TEST_F(AssetNew, TestsInOneFileAndRowsWithHolesAreSeen) {

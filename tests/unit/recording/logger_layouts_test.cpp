@@ -307,8 +307,10 @@ TEST_F(LoggerLayouts, AMapThatContradictsTheFileIsToldWhatTheFileIs) {
   const std::string text = "t [s];U [mV];x [mm]\n0,0;1,5;60,1\n0,5;2,5;59,2\n1,0;4,5;57,3\n";
   ChannelMap map = map_of("t", "");
   map.log = {.delimiter = "semicolon", .decimal = "point"};
-  EXPECT_THAT(error_of(text, map),
-              HasSubstr("log: says delimiter: semicolon, decimal: point; the file reads with delimiter: semicolon, decimal: comma"));
+  EXPECT_THAT(
+      error_of(text, map),
+      HasSubstr(
+          "log: says delimiter: semicolon, decimal: point; the file reads with delimiter: semicolon, decimal: comma"));
   map.log = {.delimiter = "tab", .decimal = {}};
   EXPECT_THAT(error_of(text, map), HasSubstr("log: says delimiter: tab; the file reads with delimiter: semicolon"));
 }

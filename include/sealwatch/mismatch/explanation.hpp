@@ -148,12 +148,11 @@ struct Location {
 
 /// Pooled over recordings: the json's fit.fit and fit.holdout.
 struct PooledFit {
+  static constexpr double kNearly = 3.0;  ///< times the noise, from which a channel is missed
   std::vector<ChannelComparison> channels;
 
-  /// Channel that the model after misses most, by samples that count, where that is three times its noise or more; null:
-  /// none.
+  /// Channel that the model after misses most, by samples that count, where that is kNearly or more; null: none.
   [[nodiscard]] const ChannelComparison* missed() const {
-    constexpr double kNearly = 3.0;
     const auto most = std::ranges::max_element(channels, {}, &ChannelComparison::weighed_rms_after);
     return most == channels.end() || most->weighed_rms_after < kNearly ? nullptr : &*most;
   }

@@ -145,7 +145,7 @@ Status Analysis::look_from(std::optional<Trial> from) {
 Status Analysis::look_beside_better(std::shared_ptr<const FittedModel> baseline) {
   forget_predictions();
   baseline_ = std::move(baseline);
-  for (std::string& sentence : wider_ranges_in_words(baseline_->asset))
+  for (std::string& sentence : wider_ranges_in_words(baseline_->asset, asset_))
     if (std::ranges::find(result_.notes, sentence) == result_.notes.end()) result_.notes.push_back(std::move(sentence));
   own_.reset();
   return look_from(std::nullopt);

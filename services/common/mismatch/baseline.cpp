@@ -64,7 +64,7 @@ class BaselineFit {
     if (!time_.deadline().passed()) model = with_tolerances(std::move(*model));
     if (!time_.deadline().passed()) model = with_colour_of_residuals(std::move(*model), channels);
     if (!time_.deadline().passed()) model = beyond_usual_ranges(std::move(*model), prepared(fit_), options_.threads);
-    std::ranges::move(wider_ranges_in_words(model->asset), std::back_inserter(baseline_.notes));
+    std::ranges::move(wider_ranges_in_words(model->asset, asset_), std::back_inserter(baseline_.notes));
     if (!windowed() && !time_.deadline().passed()) model = weighed_by_what_is_recorded(std::move(*model));
     baseline_.model = std::make_shared<const FittedModel>(std::move(*model));
     return std::move(baseline_);

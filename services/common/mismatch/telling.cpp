@@ -46,13 +46,12 @@ std::string law_in_words(const LawAt& law) {
 }
 
 std::string left_in_words(const PooledFit& fit) {
-  constexpr double kNearly = 3.0;
   if (const ChannelComparison* most = fit.missed())
     return " A part remains unexplained: " + in_words(most->channel) + " still misses by " + number(most->rms_after) +
            " times the noise.";
   // Of samples that count nothing is missed: what the others miss has a cause of its own.
   const auto missed = std::ranges::max_element(fit.channels, {}, &ChannelComparison::rms_after);
-  if (missed == fit.channels.end() || missed->rms_after < kNearly) return {};
+  if (missed == fit.channels.end() || missed->rms_after < PooledFit::kNearly) return {};
   return " What the input did between samples may account for the rest: " + in_words(missed->channel) +
          " still misses by " + number(missed->rms_after) +
          " times the noise, and the values may be off by more than their errors say.";

@@ -13,7 +13,7 @@ namespace sealwatch::mismatch {
 /// misfit. `model`: fitted to `data`.
 [[nodiscard]] FittedModel beyond_usual_ranges(FittedModel model, const Data& data, int threads);
 
-/// A sentence for each parameter whose range was widened.
-[[nodiscard]] std::vector<std::string> wider_ranges_in_words(const AssetConfig& asset);
+/// A sentence for each parameter whose range was widened beyond what is `given`.
+[[nodiscard]] std::vector<std::string> wider_ranges_in_words(const AssetConfig& fitted, const AssetConfig& given);
 
 }  // namespace sealwatch::mismatch

@@ -119,6 +119,8 @@ TEST(FarOffValues, AFitGoesOnFromTheRecordedStatesWhereItEndedInALocalMinimum) {
   const mismatch::Explanation found =
       explained("valley", "value: 3000, min: 1, max: 1.0e6", "0.003", {.spring_N_m = 31.0});
   EXPECT_EQ(found.verdict, MismatchVerdict::consistent) << found.summary;
+  const auto tells = [](const std::string& note) { return note.starts_with("No range is given"); };
+  EXPECT_TRUE(std::ranges::none_of(found.notes, tells)) << "both are, by powers of ten";
 }
 
 TEST(FarOffValues, AFitGoesBeyondARangeThatNobodyGave) {

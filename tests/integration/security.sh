@@ -87,10 +87,15 @@ EOT
   [ -z "$(find "$ours" -name '*.key' -perm /077)$(find "$ours" -name key.pem ! -perm 600)" ] || fail "others can read a private key"
 }
 
-# The topics that docs/topics.md says a layer writes (column 4) or reads (5).
-documented() {  # LAYER COLUMN
-  awk -F'|' -v column="$2" -v layer="${1//-/_}" \
-    '/^\| `[a-z_]+` \| `/ && (" " $column) ~ "[ ,]" layer "[ ,]" { gsub(/[ `]/, "", $2); print $2 }' "$source_dir/docs/topics.md"
+# The topics of which the first table of docs/topics.md says that a layer is theirs, by the column's heading. A row that begins with
+# no topic's name ends the table; service_status and resend_request, which every service has, name no layer.
+documented() {  # LAYER HEADING
+  awk -F' *[|] *' -v heading="$2" -v layer="${1//-/_}" '
+    $2 == "topic" { for (i = 3; i < NF; ++i) if ($i == heading) column = i; table = 1; next }
+    table && /^[|]-/ { next }
+    table && !/^[|] `[a-z_]+` [|]/ { exit }
+    table && (" " $column ",") ~ "[ ,]" layer "," { gsub(/`/, "", $2); print $2 }
+    END { if (!column) { print "docs/topics.md has no column " heading > "/dev/stderr"; exit 1 } }' "$source_dir/docs/topics.md"
 }
 
 # What DDS Security itself grants: to each layer what docs/topics.md says of it, to each role its own acts and no other.
@@ -106,8 +111,8 @@ check_rights() {
     if [ -z "${acts_of[$name]+role}" ]; then
       expected=$({
         printf 'write service_status\nwrite resend_request\nread service_status\n'
-        documented "$name" 4 | sed 's/^/write /'
-        documented "$name" 5 | sed 's/^/read /'
+        documented "$name" "written by" | sed 's/^/write /'
+        documented "$name" "read by" | sed 's/^/read /'
       } | sort)
     else
       acts=${acts_of[$name]}

@@ -11,12 +11,24 @@
 #include "services/cli/plant_laws.hpp"
 #include "services/common/equations/own_law.hpp"
 #include "services/common/equations/reference_quantity.hpp"
+#include "services/common/equations/site_curves.hpp"
 #include "services/common/runtime/plant_file.hpp"
 #include "services/common/text/numbers.hpp"
 #include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
+
+std::string tried_at(const equations::TextSite& site, const std::vector<Law>& own) {
+  std::vector<std::string> laws = laws_at(site, own);
+  if (equations::has_curves(site)) {
+    std::vector<std::string> signals;
+    for (const equations::TextSignal& signal : site.signals) signals.push_back(signal.name);
+    laws.push_back("curves of " + text::joined(signals, " and "));
+  }
+  if (!laws.empty()) return text::joined(laws, ", ");
+  return site.kind == SiteKind::own ? "nothing; with size at the site and at its signals, curves of them" : "nothing";
+}
 
 bool drives(const RuntimePlant& plant, const std::string& channel) {
   return std::ranges::find(plant.inputs, channel, &RuntimeInput::channel) != plant.inputs.end();
@@ -63,8 +75,7 @@ void print_plant(const std::string& file, const ReadPlant& read) {
       seen.push_back(signal.name + " = " + signal.value + " [" + signal.unit + "]");
     rows.push_back(
         {site.element, std::string(name_of(site.kind)) + " [" + site.unit + "]", "sees " + text::joined(seen, ", ")});
-    const std::vector<std::string> laws = laws_at(site, read.built.laws);
-    rows.push_back({"", "", "tried there: " + (laws.empty() ? "nothing" : text::joined(laws, ", "))});
+    rows.push_back({"", "", "tried there: " + tried_at(site, read.built.laws)});
   }
   print_table("Sites, where physics may be missing", rows);
   rows.clear();

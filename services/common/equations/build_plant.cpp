@@ -1,12 +1,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "sealwatch/core/text.hpp"
 #include "services/common/equations/derived_sizes.hpp"
 #include "services/common/equations/own_law.hpp"
 #include "services/common/equations/plant_names.hpp"
 #include "services/common/equations/reference_quantity.hpp"
+#include "services/common/equations/site_curves.hpp"
 #include "services/common/equations/site_table.hpp"
 #include "services/common/equations/text_equations.hpp"
 #include "services/common/text/words.hpp"
@@ -39,6 +41,7 @@ class Builder {
     BuiltPlant built;
     for (const TextLaw& law : text_.laws)
       if (auto made = build_law(law, text_, faults_)) built.laws.push_back(std::move(*made));
+    if (sound_) std::ranges::move(curves_at_sites(text_, faults_), std::back_inserter(built.laws));
     if (!sound_) return std::nullopt;
     built.plant = plant();
     return built;

@@ -40,15 +40,17 @@ struct TextState {
 struct TextSignal {
   std::string name;
   std::string value;
-  std::string unit;  ///< of a site of kind own
+  std::string unit;                 ///< of a site of kind own
+  std::optional<double> size = {};  ///< of a site of kind own, in its unit: how large it usually is
 };
 
 struct TextSite {
   std::string element;
   SiteKind kind = SiteKind::own;
   Feeds feeds = Feeds::anything;
-  std::string symbol;  ///< in the equations; "": none
-  std::string unit;    ///< of a site of kind own
+  std::string symbol;               ///< in the equations; "": none
+  std::string unit;                 ///< of a site of kind own
+  std::optional<double> size = {};  ///< of a site of kind own, in its unit: how large what acts there usually is
   std::vector<TextSignal> signals;
   std::vector<std::pair<std::string, std::string>> adds_to;  ///< state and factor
   std::string key;                                           ///< where it stands: "elements.piston.sites[0]"

@@ -24,6 +24,11 @@ SiteKind kind_named(const std::string& name) {
   return static_cast<SiteKind>(std::ranges::find(names, name) - names.begin());
 }
 
+void read_size(YamlMap& map, std::optional<double>& size) {
+  double value = 0.0;
+  if (map.read("size", value, kPositive)) size = value;
+}
+
 // Of a kind of the catalogue: name to expression; of the plant's own: name to {value, unit}.
 void read_signals(YamlMap& map, equations::TextSite& site) {
   auto signals = map.map("signals");
@@ -36,6 +41,7 @@ void read_signals(YamlMap& map, equations::TextSite& site) {
       site.signals.push_back({.name = name, .value = {}, .unit = {}});
       need(*signal, "value", site.signals.back().value);
       need(*signal, "unit", site.signals.back().unit);
+      read_size(*signal, site.signals.back().size);
       signal->finish();
     }
     if (site.signals.size() > kSiteSignals) map.fault("signals", {}, "are more than " + std::to_string(kSiteSignals));
@@ -68,7 +74,10 @@ equations::TextSite read_site(YamlMap& map, const std::string& element, const st
   map.read("symbol", site.symbol);
   site.feeds = read_feeds(map, element);
   site.unit = equations::names_of_site(site.kind).unit;
-  if (site.kind == SiteKind::own) need(map, "unit", site.unit);
+  if (site.kind == SiteKind::own) {
+    need(map, "unit", site.unit);
+    read_size(map, site.size);
+  }
   if (auto adds = map.map("adds_to")) {
     for (const std::string& state : adds->keys()) {
       std::string factor;

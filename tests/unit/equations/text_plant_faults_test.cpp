@@ -408,5 +408,55 @@ TEST(PlantFile, MayHaveTwentyStatesAndFiveSites) {
   expect_exact_sensitivities(**simulation);
 }
 
+// Two sites of the plant's own kind, one signal of which has the same name.
+const std::string kOwnSites =
+    with(with(kSound, "(force - lost)", "(force - lost - drag - grip)"), "law_sizes:", R"(  rail:
+    meaning: the rail
+    sites:
+      - {kind: own, unit: N, size: 2, symbol: drag, signals: {pace: {value: v, unit: m/s, size: 0.5}}}
+  clamp:
+    meaning: a clamp
+    sites:
+      - kind: own
+        unit: N
+        size: 3
+        symbol: grip
+        signals: {pace: {value: v, unit: m/s, size: 0.5}, place: {value: x, unit: m, size: 0.1}}
+law_sizes:)");
+
+TEST(OwnSites, AreAskedForCurvesOfTheirSignals) {
+  const auto plant = read_plant_file(written("own_sites", kOwnSites));
+  ASSERT_TRUE(plant) << combine(plant.error()).describe();
+  std::map<std::string, const Law*> forms;
+  std::map<std::string, int> names;
+  for (const Law& law : plant->built.laws) {
+    EXPECT_EQ(law.id, "unlisted");
+    EXPECT_TRUE(law.closed_form);
+    forms[std::string(law.form)] = &law;
+    ++names[std::string(law.parameters[0].name) + std::string(law.parameters[1].name)];
+  }
+  EXPECT_EQ(plant->built.laws.size(), 3U + 2U * 4U) << "three of each signal, and either by the other";
+  EXPECT_EQ(names.size(), plant->built.laws.size()) << "parameters tell laws of one id apart";
+  ASSERT_TRUE(forms.contains("clamp_pace_by_place"));
+  const Law& product = *forms.at("clamp_pace_by_place");
+  EXPECT_EQ(product.equation, "k_clamp_pace (pace / 0.5 m/s) abs(place / 0.1 m)^b_place");
+  const LawOutput at = product.evaluate(law_input(std::array{0.25, -0.2}, 0.0, std::array{6.0, 2.0}, {}));
+  EXPECT_NEAR(at.contribution.value, 6.0 * 0.5 * 4.0, 0.01);
+  const Law& power = *forms.at("rail_pace_power");
+  const LawOutput against = power.evaluate(law_input(std::array{-1.0}, 0.0, std::array{2.0, 3.0}, {}));
+  EXPECT_NEAR(against.contribution.value, -2.0 * 8.0, 0.01);
+}
+
+TEST(OwnSites, AreAskedForNoneWhereASizeIsMissing) {
+  const auto plant = read_plant_file(written("own_sites_without", with(kOwnSites, ", size: 0.1}", "}")));
+  ASSERT_TRUE(plant) << combine(plant.error()).describe();
+  EXPECT_EQ(plant->built.laws.size(), 3U) << "of the other site";
+}
+
+TEST(OwnSites, HaveSizesAboveZero) {
+  EXPECT_NE(faults_of(with(kOwnSites, "size: 0.1}", "size: 0}")).find("size: '0'"), std::string::npos)
+      << faults_of(with(kOwnSites, "size: 0.1}", "size: 0}"));
+}
+
 }  // namespace
 }  // namespace sealwatch

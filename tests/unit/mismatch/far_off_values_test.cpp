@@ -1,18 +1,16 @@
 // explain where a model's values are far off: a cart on a spring that a voice coil pushes, its spring a hundred times
-// stiffer in the plant's file than on the bench, or its sizes of laws a hundred times too large. Recordings by the
-// midpoint rule, which shares nothing with the simulation.
+// stiffer in the plant's file than on the bench, or its sizes of laws a hundred times too large.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "sealwatch/mismatch/explain.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "services/common/runtime/plant_file.hpp"
+#include "tests/unit/mismatch/cart_for_tests.hpp"
 #include "tests/unit/model/recording_for_tests.hpp"
 
 namespace sealwatch {
@@ -45,57 +43,17 @@ std::string cart(const std::string& name, const std::string& spring, const std::
          newton + ", m: 0.01, m/s: 0.2, N s/m: 0.5, N s2/m2: 5.0, N/m: 100, s: 1}\n";
 }
 
-struct Truth {
-  double spring_N_m = 1000.0;
-  double friction_N = 0.0;  ///< Coulomb
-};
-
-Recording recorded(const std::string& name, const Truth& truth, unsigned seed) {
-  constexpr double kStep_s = 1e-5, kSample_s = 5e-3, kDuration_s = 10.0;
-  constexpr double kMass_kg = 2.0, kDrag_N_s_m = 5.0, kForce_N_A = 12.1;
-  std::mt19937 random(seed);
-  std::normal_distribution<double> noise(0.0, 2e-5);
-  std::uniform_real_distribution<double> wait(0.1, 1.0), level(-6.0, 6.0);
-  Recording recording;
-  recording.recording_id = name;
-  Series current{"current", "A", 0.0, {}}, position{"position", "m", 2e-5, {}};
-  recording.samples.input_hold = true;
-  const long each = std::lround(kSample_s / kStep_s), steps = std::lround(kDuration_s / kStep_s);
-  double x = 0.0, v = 0.0, held_A = 0.0, next_s = wait(random);
-  for (long step = 0; step <= steps; ++step) {
-    const double t = static_cast<double>(step) * kStep_s;
-    if (step % each == 0) {
-      if (t >= next_s) {
-        held_A = level(random);
-        next_s += wait(random);
-      }
-      recording.samples.time_s.push_back(t);
-      current.values.push_back(held_A);
-      position.values.push_back(x + noise(random));
-    }
-    const auto acceleration = [&](double at, double speed) {
-      return (kForce_N_A * held_A - kDrag_N_s_m * speed - truth.spring_N_m * at -
-              truth.friction_N * std::tanh(speed / 1e-3)) /
-             kMass_kg;
-    };
-    const double middle = v + 0.5 * kStep_s * acceleration(x, v);
-    v += kStep_s * acceleration(x + 0.5 * kStep_s * v, middle);
-    x += kStep_s * middle;
-  }
-  recording.samples.channels = {std::move(current), std::move(position)};
-  return recording;
-}
-
 // `spring`, `newton`: what the plant's file says of them.
 mismatch::Explanation explained(const std::string& name, const std::string& spring, const std::string& newton,
-                                const Truth& truth) {
+                                const CartTruth& truth) {
   const std::string file = ::testing::TempDir() + name + ".yaml";
   std::ofstream(file) << cart(name, spring, newton);
   const auto plant = load_plant(file);
   if (!plant) throw std::runtime_error(combine(plant.error()).describe());
-  const std::vector<Recording> fit = {recorded("first", truth, 1), recorded("second", truth, 2),
-                                      recorded("third", truth, 3)};
-  const auto found = mismatch::explain(nominal_asset((*plant)->name), fit, std::vector{recorded("apart", truth, 4)});
+  const std::vector<Recording> fit = {recorded_cart("first", truth, 1), recorded_cart("second", truth, 2),
+                                      recorded_cart("third", truth, 3)};
+  const auto found =
+      mismatch::explain(nominal_asset((*plant)->name), fit, std::vector{recorded_cart("apart", truth, 4)});
   if (!found) throw std::runtime_error(found.error().describe());
   return *found;
 }

@@ -12,6 +12,7 @@
 #include <iostream>
 #include <map>
 #include <random>
+#include <set>
 #include <utility>
 
 #include "sealwatch/core/visible_text.hpp"
@@ -29,6 +30,14 @@ namespace {
 
 std::atomic<bool> interrupt_seen{false};
 std::chrono::milliseconds patience_after_interrupt{};  ///< set before the first signal is caught
+
+// Once in a command, which may load many assets of one plant.
+void warn_of(const PlantDescription& plant) {
+  static std::set<std::string> told;
+  for (const std::string& remark : plant.remarks)
+    if (const std::string words = plant.file + ": " + remark; told.insert(words).second)
+      std::fprintf(stderr, "sealwatch: warning: %s\n", visible(words, false).c_str());
+}
 
 }  // namespace
 
@@ -77,8 +86,9 @@ std::optional<AssetConfig> load_asset_or_explain(const std::string& path, const 
     for (const Error& error : asset.error()) complain(error);
     return std::nullopt;
   }
-  if (map_file.empty()) return std::move(*asset);
   const Result<const PlantDescription*> plant = find_plant(asset->model);
+  if (plant) warn_of(**plant);
+  if (map_file.empty()) return std::move(*asset);
   auto map = check_channel_map(map_file, plant ? *plant : nullptr);
   if (!map) {
     for (const Error& error : map.error()) complain(error);

@@ -83,8 +83,9 @@ struct PlantDescription {
   std::string wear_parameter = {};
   std::optional<ConditionSetting> condition = {};  ///< what `seal:` in an asset's file says the anchors of
   bool judged = false;                             ///< an asset that says nothing of it has that condition
-  bool hides_states = false;  ///< a unit that integrates by itself (Co-Simulation): it can have no sites
-  std::string file = {};      ///< that it was read from; "": it is built in
+  bool hides_states = false;              ///< a unit that integrates by itself (Co-Simulation): it can have no sites
+  std::string file = {};                  ///< that it was read from; "": it is built in
+  std::vector<std::string> remarks = {};  ///< on what in that file is no fault, and may be one
 
   [[nodiscard]] const ChannelDescription* find_channel(std::string_view channel) const;
   [[nodiscard]] const ParameterDescription* find_parameter(std::string_view parameter) const;

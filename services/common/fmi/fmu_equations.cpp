@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "services/common/fmi/derivative_points.hpp"
 #include "services/common/fmi/fmu_evaluator.hpp"
 
 namespace sealwatch::fmi {
@@ -61,24 +62,6 @@ BlockStart FmuEquations::start_of(const RuntimeLinearisation& at, std::size_t di
 
 namespace {
 
-/// What an evaluation answered, kept beyond the next request.
-struct Partials {
-  std::vector<double> derivatives, outputs;
-  std::vector<double> derivatives_by_state, outputs_by_state, derivatives_by_input, outputs_by_input;
-};
-
-Partials kept(const Evaluation& values) {
-  const auto copy = [](std::span<const double> numbers) { return std::vector<double>(numbers.begin(), numbers.end()); };
-  return {copy(values.derivatives),          copy(values.outputs),
-          copy(values.derivatives_by_state), copy(values.outputs_by_state),
-          copy(values.derivatives_by_input), copy(values.outputs_by_input)};
-}
-
-/// A place where derivatives are compared, in the FMU's units.
-struct DerivativePoint {
-  std::vector<double> states, inputs;
-};
-
 /// One of the four Jacobians: what it is of and by, and where its numbers are.
 struct JacobianPart {
   bool of_outputs, by_inputs;
@@ -90,35 +73,7 @@ constexpr std::array kParts = {
 
 class DerivativeCheck {
  public:
-  explicit DerivativeCheck(const FmuBlock& block) : block_(block) {
-    for (std::size_t k = 0; k < block.states.size(); ++k)
-      state_steps_.push_back(1e-7 * block.state_sizes[k] / std::abs(block.states[k].factor));
-    for (const double size : block.input_sizes) input_steps_.push_back(1e-7 * size);
-  }
-
-  /// What the unit says, or differences over steps that are `wider` times as large, at points about its start; empty
-  /// where it fails at one of them.
-  Result<std::vector<Partials>> at_points(FmuProcess& process, double wider) {
-    std::vector<double> state_steps = state_steps_, input_steps = input_steps_;
-    for (auto* steps : {&state_steps, &input_steps})
-      for (double& step : *steps) step *= wider;
-    const auto begun = process.begin({.start_time_s = block_.start_time_s,
-                                      .stop_time_s = block_.stop_time_s,
-                                      .state_steps = state_steps,
-                                      .input_steps = input_steps,
-                                      .inputs = block_.input_start,
-                                      .slots = 1,
-                                      .parameters = block_.parameter_start});
-    if (!begun) return fail(begun.error());
-    if (points_.empty()) choose_points(begun->states);
-    std::vector<Partials> partials;
-    for (const DerivativePoint& point : points_) {
-      const auto values = process.evaluate(block_.start_time_s, point.states, point.inputs, {1, 1, 0});
-      if (!values) return std::vector<Partials>();
-      partials.push_back(kept(*values));
-    }
-    return partials;
-  }
+  explicit DerivativeCheck(const FmuBlock& block) : block_(block), points_(block) {}
 
   /// What is wrong at a point; "" where nothing is. Differences over two widths that differ from each other are no
   /// measure: there the model has a corner, or its values are rounded; nor are those of none where far wider ones show
@@ -149,30 +104,16 @@ class DerivativeCheck {
     return "";
   }
 
-  [[nodiscard]] const std::vector<DerivativePoint>& points() const { return points_; }
+  [[nodiscard]] DerivativePoints& points() { return points_; }
 
  private:
   static constexpr double kTolerance = 1e-3;
   static constexpr double kRounding = 1e-13;  // of a value: what its terms cancel to is rounded more than itself
 
-  // At the start many terms vanish; beside it they show. A corner where an input starts lies at one point at most.
-  void choose_points(const std::vector<double>& start) {
-    constexpr std::array kAway = {0.013, -0.017, 0.029};
-    for (const double away : kAway) {
-      DerivativePoint point{start, block_.input_start};
-      for (std::size_t k = 0; k < start.size(); ++k)
-        point.states[k] +=
-            away * (1.0 + 0.1 * static_cast<double>(k)) * block_.state_sizes[k] / block_.states[k].factor;
-      for (std::size_t k = 0; k < block_.setup.continuous_inputs; ++k)
-        point.inputs[k] += 0.1 * away * std::max(block_.input_sizes[k], std::abs(point.inputs[k]));
-      points_.push_back(std::move(point));
-    }
-  }
-
   /// Of a difference, as the process takes it (fmu_host.cpp).
   [[nodiscard]] double step(const DerivativePoint& point, bool by_inputs, std::size_t column) const {
     const double value = by_inputs ? point.inputs[column] : point.states[column];
-    return std::max(by_inputs ? input_steps_[column] : state_steps_[column], 1e-7 * std::abs(value));
+    return std::max(points_.step(by_inputs, column), 1e-7 * std::abs(value));
   }
 
   [[nodiscard]] std::string words(const JacobianPart& part, std::size_t row, std::size_t column, double said,
@@ -187,8 +128,7 @@ class DerivativeCheck {
   }
 
   const FmuBlock& block_;
-  std::vector<double> state_steps_, input_steps_;
-  std::vector<DerivativePoint> points_;
+  DerivativePoints points_;
 };
 
 }  // namespace
@@ -216,21 +156,21 @@ Status check_derivatives(FmuBlock& block) {
   if (!honest) return fail(honest.error());
   DerivativeCheck check(block);
   constexpr double kWider = 10.0, kFar = 1e4;
-  const auto fine = check.at_points(**honest, 1.0);
+  const auto fine = check.points().partials(**honest, 1.0);
   if (!fine) return fail(fine.error());
-  const auto wide = check.at_points(**honest, kWider);
+  const auto wide = check.points().partials(**honest, kWider);
   if (!wide) return fail(wide.error());
-  const auto far = check.at_points(**honest, kFar);
+  const auto far = check.points().partials(**honest, kFar);
   if (!far) return fail(far.error());
   if (fine->empty() || wide->empty() || far->empty()) return {};  // nothing to measure by; a run says what fails
   auto claimed = FmuProcess::start(block.file->name(), block.setup, 1);
   if (!claimed) return fail(claimed.error());
-  const auto said = check.at_points(**claimed, 1.0);
+  const auto said = check.points().partials(**claimed, 1.0);
   if (!said) return fail(said.error());
   if (said->empty()) return block.setup.state_directional = block.setup.output_directional = 0, Status();
   std::string fault;
   for (std::size_t k = 0; k < said->size(); ++k) {  // a corner can lie at one point, not at all of them
-    fault = check.fault_at(check.points()[k], (*said)[k], (*fine)[k], (*wide)[k], (*far)[k]);
+    fault = check.fault_at(check.points().all()[k], (*said)[k], (*fine)[k], (*wide)[k], (*far)[k]);
     if (fault.empty()) return {};
   }
   return fail(false_derivatives(*block.file, std::move(fault)));

@@ -7,10 +7,13 @@
 #include <map>
 
 #include "sealwatch/core/file.hpp"
+#include "sealwatch/core/rate_unit.hpp"
 #include "sealwatch/core/text.hpp"
 #include "services/common/equations/dimension.hpp"
 #include "services/common/equations/plant_names.hpp"
+#include "services/common/fmi/derived_outputs.hpp"
 #include "services/common/fmi/fmu_equations.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch::fmi {
 namespace {
@@ -49,6 +52,7 @@ class Builder {
     if (!built || !sound_) return std::nullopt;
     if (const Status honest = check_derivatives(block_); !honest)
       return complain("fmu.file", honest.error()), std::nullopt;
+    note_what_laws_do_not_reach(built->remarks);
     if (!undefined_units_.empty()) built->remarks.push_back(undefined_units_ + ": " + kUndefinedUnits);
     strip(built->plant);
     return built;
@@ -329,17 +333,86 @@ class Builder {
     return formula ? equations::words_of(formula->dimension) : "1";
   }
 
-  // Whether what laws add is seen at once by an output, or by an input of the FMU.
-  [[nodiscard]] bool outputs_see_added() const {
+  /// What an output's expression contains: names are those of PlantNames::places().
+  [[nodiscard]] std::vector<bool> used_by(const equations::TextOutput& output, std::size_t& added) const {
     equations::Expressions expressions;
     const equations::Faults quiet = [](const std::string&, const Error&) {};
     equations::PlantNames names(frame_, expressions, quiet);
+    added = names.places().added;
+    const auto formula = equations::understand(output.value, expressions, names);
+    if (!formula) return std::vector<bool>(names.places().count);
+    return expressions.variables_of(std::array{formula->node}, names.places().count);
+  }
+
+  // An output that the FMU computes from a derivative does not see what a law adds to that behind the FMU. The process
+  // that runs simulations has nobody to tell it.
+  void note_what_laws_do_not_reach(std::vector<std::string>& remarks) const {
+    struct Pair {
+      const equations::TextSite* site;
+      const std::pair<std::string, std::string>* adds;
+      const equations::TextOutput* output;
+      std::size_t state, variable;
+    };
+    std::vector<Pair> pairs;
+    std::vector<std::size_t> states, variables;
+    const std::size_t own = frame_.sites.size() - text_.sites.size();
+    for (const equations::TextOutput& output : text_.outputs) {
+      std::size_t added = 0;
+      const std::vector<bool> used = used_by(output, added);
+      for (std::size_t variable = 0; variable < section_.variables.size(); ++variable)
+        for (std::size_t site = 0; site < text_.sites.size(); ++site) {
+          if (!used[added + frame_.states.size() + variable] || used[added + own + site]) continue;
+          for (const auto& adds : text_.sites[site].adds_to)
+            for (std::size_t state = 0; state < frame_.states.size(); ++state)
+              if (frame_.states[state].description.name == adds.first)
+                pairs.push_back({&text_.sites[site], &adds, &output, state, variable});
+        }
+    }
+    for (const Pair& pair : pairs) states.push_back(pair.state), variables.push_back(pair.variable);
+    for (auto* list : {&states, &variables}) {
+      std::ranges::sort(*list);
+      list->erase(std::ranges::unique(*list).begin(), list->end());
+    }
+    if (pairs.empty() || local_hosts()) return;
+    const auto derived = outputs_of_derivatives(block_, variables, states);
+    if (!derived) return;  // a run says what fails
+    for (const Pair& pair : pairs)
+      for (const DerivedOutput& one : *derived)
+        if (one.state == pair.state && one.variable == pair.variable)
+          remarks.push_back(not_reached(*pair.site, *pair.adds, *pair.output, section_.variables[one.variable].name,
+                                        factor_in_words(one)));
+  }
+
+  /// As a formula has it: "0.102[s2/m]*".
+  [[nodiscard]] std::string factor_in_words(const DerivedOutput& one) const {
+    const auto variable = equations::find_dimension(section_.variables[one.variable].unit),
+               rate = equations::find_dimension(rate_unit(frame_.states[one.state].description.unit));
+    const std::string unit = variable && rate ? equations::words_of(multiply(*variable, *rate, -1.0)) : "1";
+    constexpr double kOne = 1e-3;
+    if (unit == "1" && std::abs(one.factor - 1.0) < kOne) return "";
+    return text::general(one.factor) + (unit == "1" ? "" : "[" + unit + "]") + "*";
+  }
+
+  [[nodiscard]] static std::string not_reached(const equations::TextSite& site,
+                                               const std::pair<std::string, std::string>& adds,
+                                               const equations::TextOutput& output, const std::string& variable,
+                                               const std::string& factor) {
+    const std::string symbol = site.symbol.empty() ? site.element + "_law" : site.symbol;
+    return "outputs." + output.channel.name + ": the FMU computes " + variable + " from the derivative of " +
+           adds.first + ", so that what " + site.key + ".adds_to adds to " + adds.first +
+           " does not reach it, and results with this output can be false: give the site the symbol " + symbol +
+           " and write (" + variable + " + " + factor + "(" + adds.second + ")*" + symbol + ") for " + variable +
+           ", or let the symbol stand in an input of the FMU in place of adds_to, or take the output out of the "
+           "channels";
+  }
+
+  // Whether what laws add is seen at once by an output, or by an input of the FMU.
+  [[nodiscard]] bool outputs_see_added() const {
     const std::size_t own = frame_.sites.size() - text_.sites.size();
     return std::ranges::any_of(frame_.outputs, [&](const equations::TextOutput& output) {
-      const auto formula = equations::understand(output.value, expressions, names);
-      if (!formula) return false;
-      const auto used = expressions.variables_of(std::array{formula->node}, names.places().count);
-      return std::any_of(used.begin() + static_cast<std::ptrdiff_t>(names.places().added + own), used.end(),
+      std::size_t added = 0;
+      const std::vector<bool> used = used_by(output, added);
+      return std::any_of(used.begin() + static_cast<std::ptrdiff_t>(added + own), used.end(),
                          [](bool one) { return one; });
     });
   }

@@ -46,6 +46,8 @@ Result<Explanation> explain(const AssetConfig& asset, std::span<const Recording>
   Result<Explanation> found = Analysis(asset, std::move(data), data_of(kept_aside, fitted), options, progress).run();
   if (!found) return found;
   std::ranges::move(notes, std::back_inserter(found->notes));
+  if (const auto plant = find_plant(asset.model))
+    for (const std::string& remark : (*plant)->remarks) found->notes.push_back("Of the plant's file: " + remark + ".");
   if (!halves.empty())
     found->notes.push_back(
         "The one recording is long enough to be two, a correlation time apart: each half is left out "

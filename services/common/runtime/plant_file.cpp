@@ -227,6 +227,7 @@ Checked<const PlantDescription*> load_plant(const std::string& file) {
   Checked<ReadPlant> read = read_plant_file(file);
   if (!read) return tl::unexpected(read.error());
   read->built.plant.description.file = path;
+  read->built.plant.description.remarks = std::move(read->built.remarks);
   const std::string name = read->built.plant.description.name;
   if (const auto taken = find_plant(name))
     return tl::unexpected(

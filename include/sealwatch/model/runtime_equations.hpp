@@ -22,6 +22,7 @@
 #include <string>
 #include <vector>
 
+#include "sealwatch/core/deadline.hpp"
 #include "sealwatch/core/result.hpp"
 #include "sealwatch/core/time_series.hpp"
 #include "sealwatch/model/driving_channels.hpp"
@@ -44,6 +45,7 @@ struct RuntimePoint {
   std::span<const double> added;        ///< e: contribution of the laws at each site, a loss is positive
   /// Of a run's first point: nothing is asked beyond this time.
   double last_time_s = std::numeric_limits<double>::infinity();
+  const Deadline* deadline = nullptr;  ///< of a run's first point: of the run
 };
 
 struct RuntimeMatrix {

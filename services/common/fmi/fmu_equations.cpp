@@ -42,7 +42,7 @@ Result<std::unique_ptr<RuntimeEvaluator>> FmuEquations::evaluator(const RuntimeP
     steps.push_back(kStep * (size > 0.0 ? size : 1.0));
     starts.push_back(start_of(*at, k, steps.back()));
   }
-  auto running = RunningBlock::begin(block_, pool_, first.time_s, first.last_time_s, starts, std::move(steps));
+  auto running = RunningBlock::begin(block_, pool_, first, starts, std::move(steps));
   if (!running) return fail(running.error());
   return std::make_unique<FmuEvaluator>(block_, std::move(*frame), std::move(*running), counts_.outputs, counts_.sites,
                                         differentiated.size(), frame_->signals_see_added());

@@ -52,7 +52,9 @@ struct BlockStart {
 /// Processes that run the FMU, kept for the next run.
 class ProcessPool {
  public:
-  [[nodiscard]] Result<std::unique_ptr<FmuProcess>> take(const FmuBlock& block, std::size_t slots);
+  /// One that keeps the deadline until it is given back.
+  [[nodiscard]] Result<std::unique_ptr<FmuProcess>> take(const FmuBlock& block, std::size_t slots,
+                                                         const Deadline* deadline);
   void give_back(std::unique_ptr<FmuProcess> process);
 
  private:

@@ -30,8 +30,8 @@ class RunningBlock {
  public:
   /// `starts`: v and q of the run, then those of each direction of differentiation at a step `steps[k]` away.
   [[nodiscard]] static Result<std::unique_ptr<RunningBlock>> begin(const FmuBlock& block,
-                                                                   std::shared_ptr<ProcessPool> pool, double time_s,
-                                                                   double last_time_s,
+                                                                   std::shared_ptr<ProcessPool> pool,
+                                                                   const RuntimePoint& first,
                                                                    const std::vector<BlockStart>& starts,
                                                                    std::vector<double> steps);
   ~RunningBlock();
@@ -55,8 +55,9 @@ class RunningBlock {
   void start(std::span<double> states, RuntimeMatrix& by_parameter) const;
 
  private:
-  RunningBlock(const FmuBlock& block, std::shared_ptr<ProcessPool> pool, std::vector<double> steps)
-      : block_(block), pool_(std::move(pool)), steps_(std::move(steps)) {}
+  RunningBlock(const FmuBlock& block, std::shared_ptr<ProcessPool> pool, const Deadline* deadline,
+               std::vector<double> steps)
+      : block_(block), pool_(std::move(pool)), deadline_(deadline), steps_(std::move(steps)) {}
   /// Another process, with these instances.
   [[nodiscard]] Status begin_process(double time_s, double stop_s, std::span<const BlockStart> starts);
   void set_point(std::span<const double> states, std::span<const double> inputs);
@@ -87,6 +88,7 @@ class RunningBlock {
 
   const FmuBlock& block_;
   std::shared_ptr<ProcessPool> pool_;
+  const Deadline* deadline_;
   std::vector<std::unique_ptr<FmuProcess>> processes_;  ///< several where the binary allows one instance in each
   std::vector<double> steps_;
   Beginning beginning_;

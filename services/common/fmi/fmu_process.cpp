@@ -34,8 +34,9 @@ FmuProcess::FmuProcess(std::string file, Setup setup, std::size_t most_slots, co
 }
 
 Result<std::unique_ptr<FmuProcess>> FmuProcess::start(const std::string& file, Setup setup, std::size_t most_slots,
-                                                      const ProcessLimits& limits) {
+                                                      const ProcessLimits& limits, const Deadline* deadline) {
   std::unique_ptr<FmuProcess> process(new FmuProcess(file, std::move(setup), most_slots, limits));
+  process->keep(deadline);
   if (local_hosts()) {
     process->serve_here(process->setup_);
     return process;

@@ -50,7 +50,8 @@ class FmuProcess : public HostProcess {
   /// `most_slots`: how many instances a run may have.
   [[nodiscard]] static Result<std::unique_ptr<FmuProcess>> start(const std::string& file, Setup setup,
                                                                  std::size_t most_slots,
-                                                                 const ProcessLimits& limits = {});
+                                                                 const ProcessLimits& limits = {},
+                                                                 const Deadline* deadline = nullptr);
 
   struct Run {
     double start_time_s = 0.0;

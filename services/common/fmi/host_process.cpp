@@ -126,19 +126,23 @@ std::span<std::byte> HostProcess::heap() const {
 }
 
 Status HostProcess::request(Operation operation, const char* what, double seconds, double time_s,
-                            const std::function<bool()>& look) {
+                            const std::function<void()>& look) {
   using Clock = std::chrono::steady_clock;
   if (!alive()) return fail(failure(place_of(what, time_s), "the process that ran the FMU has ended", "start anew"));
   if (local_) return request_here(operation, what, time_s);
   const std::uint32_t number = header_->requests.load() + 1;
   header_->operation = operation;
   store_and_wake(header_->requests, number);
-  constexpr double kLook_s = 0.02;  // how soon an end of the process is seen
+  constexpr double kLook_s = 0.02;              // how soon an end of the process is seen
+  constexpr std::chrono::seconds kPatience{3};  // a run is told to stop, which it does between two calls
+  std::optional<Clock::time_point> passed_at;
   auto begin = Clock::now();
   std::uint32_t calls = header_->calls.load();
   bool told = !slow_starts();
   for (std::uint32_t last = number - 1; !wait_while(header_->answers, last, kLook_s);) {
-    const bool unwanted = look && look();
+    if (look) look();
+    if (!passed_at && passed(deadline_)) passed_at = Clock::now();
+    const bool unwanted = passed_at && Clock::now() - *passed_at > kPatience;
     if (has_ended()) {
       const int status = kill_and_reap();
       if (header_->answers.load() == number) break;

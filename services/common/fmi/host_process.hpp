@@ -15,6 +15,7 @@
 #include <span>
 #include <string>
 
+#include "sealwatch/core/deadline.hpp"
 #include "sealwatch/core/result.hpp"
 #include "services/common/fmi/host_protocol.hpp"
 
@@ -54,6 +55,9 @@ class HostProcess {
     Error error;
   };
   [[nodiscard]] const std::optional<Loss>& loss() const { return loss_; }
+  /// Until this is called again a request is not waited for longer than some seconds beyond the deadline; null: it has its
+  /// own limit alone.
+  void keep(const Deadline* deadline) { deadline_ = deadline; }
   /// For a start that is only tried.
   void limit_start(double seconds) { limits_.start_s = seconds; }
 
@@ -65,9 +69,9 @@ class HostProcess {
   /// Ends it, with what it has open; launch() may follow.
   void end();
   /// `what` it is asked, at `time_s` unless that is NaN. `seconds`: how long a call of the binary may take within it.
-  /// `look` is called now and then; true: nobody waits for the answer any more, and the process is ended.
+  /// `look` is called now and then.
   [[nodiscard]] Status request(Operation operation, const char* what, double seconds, double time_s = kNoTime,
-                               const std::function<bool()>& look = {});
+                               const std::function<void()>& look = {});
   [[nodiscard]] const ProcessLimits& limits() const { return limits_; }
   [[nodiscard]] std::span<std::byte> heap() const;
   [[nodiscard]] Packer packer() const { return Packer(heap()); }
@@ -105,6 +109,7 @@ class HostProcess {
   pid_t child_ = -1;
   int life_ = -1, output_ = -1;
   bool alive_ = false;
+  const Deadline* deadline_ = nullptr;
   double peak_bytes_ = 0.0;  ///< of memory, of the one that was reaped last
   std::optional<Loss> loss_;
   std::unique_ptr<LocalHost> local_;

@@ -2,17 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
-#include <optional>
 
 namespace sealwatch::fmi {
 namespace {
 
 /// Simulations that a process keeps: those of several recordings take turns.
 constexpr std::size_t kMostSimulations = 24;
-
-/// With a run that has been told to stop, and is in a call of the binary.
-constexpr std::chrono::seconds kPatience{3};
 
 /// What the largest request or answer of a run takes, with room for the words of an error.
 std::size_t bytes_for(const RuntimeRun& run) {
@@ -69,12 +64,8 @@ Result<SimulatedOutputs> RunProcess::run(const RuntimeRun& run) {
   packer.put(*place);
   put_run(packer, run);
   header().stop = 0;
-  std::optional<Deadline::Clock::time_point> told;  // to stop, which a run does between two calls of the binary
   const auto look = [&] {
-    if (!passed(run.options.deadline)) return false;
-    header().stop = 1;
-    if (!told) told = Deadline::Clock::now();
-    return Deadline::Clock::now() - *told > kPatience;
+    if (passed(run.options.deadline)) header().stop = 1;
   };
   Status status = request(Operation::run, "a simulation", limits().call_s, kNoTime, look);
   std::vector<std::array<double, kSiteSignals>> signals(run.sites);
@@ -86,7 +77,7 @@ Result<SimulatedOutputs> RunProcess::run(const RuntimeRun& run) {
     if (run.injected != nullptr) run.injected->weigh(time_s, signals, weights);
     Packer answer = this->packer();
     answer.put_numbers(weights);
-    static_cast<void>(look());
+    look();
     status = request(Operation::weights, "a simulation", limits().call_s, kNoTime, look);
   }
   if (!status) return fail(status.error());
@@ -120,7 +111,9 @@ Result<SimulatedOutputs> HostedRuns::run(const RuntimeRun& run) {
   if (passed(run.options.deadline)) return fail("the simulation was ended: its time was up");
   auto process = take(run);
   if (!process) return fail(process.error());
+  (*process)->keep(run.options.deadline);
   Result<SimulatedOutputs> outputs = (*process)->run(run);
+  (*process)->keep(nullptr);
   lost_.note(**process);
   if (!(*process)->alive()) return outputs;
   const std::scoped_lock lock(mutex_);

@@ -20,7 +20,8 @@ std::vector<double> state_steps(const FmuBlock& block) {
 
 }  // namespace
 
-Result<std::unique_ptr<FmuProcess>> ProcessPool::take(const FmuBlock& block, std::size_t slots) {
+Result<std::unique_ptr<FmuProcess>> ProcessPool::take(const FmuBlock& block, std::size_t slots,
+                                                      const Deadline* deadline) {
   if (const auto why_none = lost_.given_up()) return fail(*why_none);
   std::vector<std::unique_ptr<FmuProcess>> gone;  // they take a while to end, in which nobody should wait
   {
@@ -30,32 +31,36 @@ Result<std::unique_ptr<FmuProcess>> ProcessPool::take(const FmuBlock& block, std
     if (fits != idle_.end()) {
       std::unique_ptr<FmuProcess> process = std::move(*fits);
       idle_.erase(fits);
+      process->keep(deadline);
       return process;
     }
     gone.swap(idle_);  // too small, or of the process that this one is a copy of
   }
-  return FmuProcess::start(block.file->name(), block.setup, slots);
+  return FmuProcess::start(block.file->name(), block.setup, slots, {}, deadline);
 }
 
 void ProcessPool::give_back(std::unique_ptr<FmuProcess> process) {
   lost_.note(*process);
   if (!process->alive()) return;
+  process->keep(nullptr);
   const std::scoped_lock lock(mutex_);
   idle_.push_back(std::move(process));
 }
 
 Result<std::unique_ptr<RunningBlock>> RunningBlock::begin(const FmuBlock& block, std::shared_ptr<ProcessPool> pool,
-                                                          double time_s, double last_time_s,
+                                                          const RuntimePoint& first,
                                                           const std::vector<BlockStart>& starts,
                                                           std::vector<double> steps) {
-  std::unique_ptr<RunningBlock> running(new RunningBlock(block, std::move(pool), std::move(steps)));
+  std::unique_ptr<RunningBlock> running(new RunningBlock(block, std::move(pool), first.deadline, std::move(steps)));
   const std::size_t in_one = block.setup.once_per_process != 0 ? 1 : starts.size();
   // What the unit lays out until its stop time is to last for a recording that is longer than its maker's experiment.
-  const double stop_s = std::isfinite(last_time_s) ? std::max(block.stop_time_s, last_time_s) : block.stop_time_s;
-  for (std::size_t first = 0; first < starts.size(); first += in_one)
-    if (const Status begun = running->begin_process(time_s, stop_s, std::span(starts).subspan(first, in_one)); !begun)
+  const double stop_s =
+      std::isfinite(first.last_time_s) ? std::max(block.stop_time_s, first.last_time_s) : block.stop_time_s;
+  for (std::size_t slot = 0; slot < starts.size(); slot += in_one)
+    if (const Status begun = running->begin_process(first.time_s, stop_s, std::span(starts).subspan(slot, in_one));
+        !begun)
       return fail(begun.error());
-  if (running->beginning_.outcome.terminate) running->end_at(time_s);
+  if (running->beginning_.outcome.terminate) running->end_at(first.time_s);
   running->inputs_ = block.input_start;
   running->states_.resize(block.states.size());
   return running;
@@ -74,7 +79,7 @@ void append(const std::vector<double>& start, const std::vector<Port>& ports, co
 }  // namespace
 
 Status RunningBlock::begin_process(double time_s, double stop_s, std::span<const BlockStart> starts) {
-  auto process = pool_->take(block_, starts.size());
+  auto process = pool_->take(block_, starts.size(), deadline_);
   if (!process) return fail(process.error());
   processes_.push_back(std::move(*process));
   const std::vector<double> differences = state_steps(block_);

@@ -41,8 +41,9 @@ std::vector<InputChannel> input_channels(const RuntimePlant& plant, const TimeSe
 class FirstPoint {
  public:
   FirstPoint(const RuntimePlant& plant, const PlantDescription& description, const RecordedInput& input,
-             const ModelValues& values)
-      : time_s_(input.times().front()),
+             const ModelValues& values, const Deadline* deadline)
+      : deadline_(deadline),
+        time_s_(input.times().front()),
         last_time_s_(input.times().back() + longest_step_s(input.times())),  // a step may lead beyond the last sample
         states_(values.initial_state.begin(),
                 values.initial_state.begin() + static_cast<std::ptrdiff_t>(plant.states.size())),
@@ -60,10 +61,12 @@ class FirstPoint {
             .input_rates = rates_,
             .parameters = parameters_,
             .added = added_,
-            .last_time_s = last_time_s_};
+            .last_time_s = last_time_s_,
+            .deadline = deadline_};
   }
 
  private:
+  const Deadline* deadline_;
   double time_s_, last_time_s_;
   std::vector<double> states_, parameters_, added_, inputs_, rates_;
 };
@@ -111,7 +114,7 @@ Status start_by_equations(const RuntimePlant& plant, const PlantDescription& des
                           ModelValues& start) {
   if (std::ranges::none_of(plant.states, &RuntimeState::by_equations)) return {};
   const RecordedInput input(recorded.time_s, input_channels(plant, recorded));
-  const FirstPoint first(plant, description, input, start);
+  const FirstPoint first(plant, description, input, start, nullptr);
   const auto evaluator = plant.equations->evaluator(first.point(), {});
   if (!evaluator) return fail(evaluator.error());
   std::vector<double> states = start.initial_state;
@@ -181,7 +184,7 @@ Result<SimulatedOutputs> RuntimePlantSimulation::run_driven_by(const RecordedInp
                                      .injected = injected,
                                      .sites = plant().sites.size()});
   FreeColumns columns = free_columns(plant(), values, free);
-  const FirstPoint first(*runtime_, plant(), input, values);
+  const FirstPoint first(*runtime_, plant(), input, values, options.deadline);
   auto evaluator = runtime_->equations->evaluator(first.point(), columns.differentiated);
   if (!evaluator) return fail(evaluator.error());
   RuntimeSystem system(*runtime_, std::move(*evaluator), input, terms(), values, std::move(columns), injected);

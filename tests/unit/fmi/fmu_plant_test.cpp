@@ -676,6 +676,29 @@ TEST(FmuPlant, ARunThatIsInACallEndsSoonAfterItsDeadline) {
   EXPECT_LT(seconds_since(again), 0.1);
 }
 
+/// Its calls are requests of this process: those of other units are made within the process that has the binary.
+TEST(FmuPlant, ACallOfAUnitThatIsAloneInItsProcessEndsSoonAfterTheDeadline) {
+  const TestFolder folder;
+  TestUnit unit = spring_return("fmu_hang2");
+  unit.interfaces = "<ModelExchange modelIdentifier=\"model\" canBeInstantiatedOnlyOncePerProcess=\"true\"/>\n";
+  static_cast<void>(folder.build(unit));
+  const auto plant = load_plant(written(folder, plant_text("hanging_alone")));
+  ASSERT_TRUE(plant) << plant.error().front().describe();
+  const auto simulation = PlantSimulation::create(nominal_asset("hanging_alone"), strokes());
+  ASSERT_TRUE(simulation) << simulation.error().describe();
+  Deadline deadline;
+  deadline.set_in(0.5);
+  const auto begin = Deadline::Clock::now();
+  const auto outputs = (*simulation)->run((*simulation)->start(), {}, {.deadline = &deadline});
+  ASSERT_FALSE(outputs);
+  EXPECT_THAT(outputs.error().describe(), HasSubstr("its time was up"));
+  EXPECT_LT(seconds_since(begin), 10.0);
+  const auto again = Deadline::Clock::now();
+  EXPECT_THAT((*simulation)->run((*simulation)->start(), {}).error().describe(),
+              testing::AllOf(HasSubstr("the derivatives at t = 0.5"), HasSubstr("the time limit was over")));
+  EXPECT_LT(seconds_since(again), 0.5);
+}
+
 /// A service runs for months: what the unit waited for may be there again. A run between makes single crashes of them.
 TEST(FmuPlant, AUnitThatWasGivenUpIsTriedAgainLater) {
   const TestFolder folder;

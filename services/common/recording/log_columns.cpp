@@ -208,14 +208,15 @@ std::string_view unit_behind_a_slash(std::string_view text, const std::string& s
   return {};
 }
 
-/// "V" of "Drive (V) (raw)" and "Drive[V]{1}": the last in brackets.
+/// "V" of "Drive (V) (raw)" and "Drive[V]{1}": the last in brackets; "ms" of "Zeit (ms seit Start)", where words follow.
 std::string_view unit_in_brackets(std::string_view text, const std::string& si_unit) {
   for (std::size_t open = text.find_last_of("[("); open != std::string_view::npos && open > 0;
        open = text.find_last_of("[(", open - 1)) {
     const std::size_t close = text.find(text[open] == '[' ? ']' : ')', open);
     if (close == std::string_view::npos) continue;
     const std::string_view unit = trim(text.substr(open + 1, close - open - 1));
-    if (!unit.empty() && convert_unit(unit, si_unit)) return unit;
+    for (const std::string_view said : {unit, unit.substr(0, unit.find_first_of(" ,;"))})
+      if (!said.empty() && convert_unit(said, si_unit)) return said;
   }
   return {};
 }

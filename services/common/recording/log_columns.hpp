@@ -50,7 +50,7 @@ struct MappedColumns {
 
 /// The unit at the end of a name, "t_ms", "Speed rpm", where it is one of `si_unit`'s quantity and no letter, which may be
 /// a chamber's; "%" and "counts" of any quantity, which are to be refused without a scale. Behind a slash, "U/V", or in
-/// brackets that something follows, "Stroke (mm) - raw", a letter too. "" where there is none.
+/// brackets that something follows, "Stroke (mm) - raw", or that go on, "Zeit (s seit Start)", a letter too. "" where there is none.
 [[nodiscard]] std::string unit_at_the_end(std::string_view text, const std::string& si_unit);
 
 /// How many seconds one of a column's numbers is, where the column says a unit of time: beside it, at its end or as its

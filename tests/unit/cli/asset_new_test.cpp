@@ -596,6 +596,15 @@ TEST_F(StrangeLogs, AStepInTheHeadMayHaveItsUnitBehindIt) {
   }
 }
 
+TEST_F(StrangeLogs, AUnitInBracketsMayBeFollowedByWords) {
+  for (const char* time : {"Uhrzeit (ms seit Start)", "Temps (ms depuis le debut)", "Clock (ms, since start)"}) {
+    const ReadBack back =
+        read_back(std::string(time) + ";motor_voltage (V an M1);Weg (mm, rel.)\n0;1.5;60\n250;2;59\n500;4;57\n");
+    EXPECT_THAT(back.samples.time_s, ::testing::ElementsAre(0.0, 0.25, 0.5)) << time << back.told;
+    EXPECT_THAT(back.told, ::testing::Not(::testing::HasSubstr("no unit")));
+  }
+}
+
 // Seconds that are a count of samples are wrong by the sampling rate, and nothing else shows it.
 TEST_F(StrangeLogs, AColumnThatOnlyRisesIsNamedAsTheTime) {
   EXPECT_THAT(read_back("No.;motor_voltage [V];position [mm]\n1;1.5;60\n2;2;59\n3;4;57\n").told,

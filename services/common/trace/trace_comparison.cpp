@@ -282,8 +282,9 @@ class Comparison {
     out.noise_std = judged.test.noise_std;
     out.effective_samples = judged.test.effective_samples;
     out.nrmse_percent = nrmse_percent(out.recorded, out.simulated);
-    out.p_value = std::min(1.0, judged.test.p_value * static_cast<double>(pairs_.size()));
-    out.differs = judged.test.p_value < limit() || is_likelier_turned_round(pair);
+    const double odds = judged.test.p_value < limit() ? 1.0 : odds_of_waves(pair);
+    out.p_value = std::min(odds, judged.test.p_value * static_cast<double>(pairs_.size()));
+    out.differs = judged.test.p_value < limit() || odds < 1.0;
     std::vector<GroupTest> telling = judged.test.groups;
     std::ranges::sort(telling, {}, &GroupTest::p_value);
     for (const GroupTest& group : telling)
@@ -301,11 +302,22 @@ class Comparison {
     return out;
   }
 
-  /// Twice a few waves is what noise of some colour may be, too, of which no regressor tells; with the other sign there is
-  /// none of it left.
-  [[nodiscard]] bool is_likelier_turned_round(const Pair& pair) const {
-    const std::optional<Draft> turned = draft("sign", pair.name, {&pair}, {.offset = true, .fixed_gain = -1.0});
-    return turned && turned->told.criterion < unaltered_criterion(times(), {&pair}) - kFarMoreLikely;
+  /// A few waves are what noise of some colour may be, too, of which no regressor tells; with the other sign, or another
+  /// clock, there is none of it left. How much less likely such noise is, 1 where it is not by far.
+  [[nodiscard]] double odds_of_waves(const Pair& pair) const {
+    constexpr double kFarWiderSearched = 30.0;  // of -2 log L: what is free is looked for over a whole range
+    constexpr double kMost = 0.5;               // of the misfit
+    const double unaltered = unaltered_criterion(times(), {&pair});
+    const auto gain_by = [&](const Freedom& freedom, bool searched) {
+      const std::optional<Draft> asked = draft("", pair.name, {&pair}, freedom);
+      const double gain = asked ? unaltered - asked->told.criterion : 0.0;
+      if (!searched) return gain > kFarMoreLikely ? gain : 0.0;
+      return gain > kFarWiderSearched && asked->told.removed_share > kMost && leaves_noise(*asked) ? gain : 0.0;
+    };
+    double gain = gain_by({.offset = true, .fixed_gain = -1.0}, false);
+    for (const Freedom& freedom : {Freedom{.gain = true}, Freedom{.delay = true}, Freedom{.clock = true}})
+      if (gain == 0.0) gain = gain_by(freedom, true);
+    return std::exp(-0.5 * gain);
   }
 
   [[nodiscard]] CommonTimes times() const { return {out_.time_s, joints_}; }
@@ -355,9 +367,13 @@ class Comparison {
       std::vector<Draft> drafts;
       for (const Way& way : level)
         if (std::optional<Draft> asked = ask(way, pair)) drafts.push_back(std::move(*asked));
-      for (const Draft& asked : drafts) best = std::min(best, asked.told.criterion);
+      // A gain may lessen the simulation's own noise, and so be likelier, without coming nearer to the recording.
+      const auto comes_nearer = [](const Draft& asked) { return asked.told.removed_share > 0.0; };
+      for (const Draft& asked : drafts)
+        if (comes_nearer(asked)) best = std::min(best, asked.told.criterion);
       for (Draft& asked : drafts) {
-        asked.told.would_do = asked.told.criterion <= best + kFarMoreLikely && leaves_noise(asked);
+        asked.told.would_do =
+            comes_nearer(asked) && asked.told.criterion <= best + kFarMoreLikely && leaves_noise(asked);
         out.alterations.push_back(std::move(asked.told));
       }
       if (std::ranges::any_of(out.alterations, &Alteration::would_do)) break;

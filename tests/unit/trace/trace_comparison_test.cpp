@@ -239,6 +239,34 @@ TEST(Trace, AClockIsOneCauseOfAllChannels) {
   EXPECT_NEAR(found.answer[0].parameters[0].value, 1.01, 4.0 * found.answer[0].parameters[0].std_error);
 }
 
+// The difference of two sines is one that comes and goes, as smooth noise does; on one clock there is none of it left.
+TEST(Trace, AClockIsFoundWhereTheDriveIsASine) {
+  const auto sine = [](double clock, unsigned seed) {
+    TimeSeries out;
+    Series position{.name = "position", .unit = "m", .values = {}};
+    std::mt19937 random(seed);
+    std::normal_distribution<double> noise(0.0, 1e-5);
+    for (int k = 0; k < 2000; ++k) {
+      out.time_s.push_back(0.005 * k * clock);
+      position.values.push_back(0.03 * std::sin(2.0 * kPi * 0.4 * 0.005 * k) + noise(random));
+    }
+    out.channels = {position};
+    return out;
+  };
+  for (const double clock : {1.02, 0.98}) {
+    const TraceComparison found = compare(sine(clock, 3), sine(1.0, 4));
+    ASSERT_FALSE(found.consistent) << clock;
+    ASSERT_THAT(found.answer, SizeIs(1));
+    EXPECT_EQ(found.answer[0].id, "clock_rate");
+    EXPECT_NEAR(found.answer[0].parameters[0].value, clock, 1e-5);
+    EXPECT_LT(found.channels[0].p_value, 0.01);
+  }
+  int alarms = 0;
+  for (unsigned seed = 10; seed < 30; ++seed)
+    alarms += compare(sine(1.0, seed), sine(1.0, seed + 100)).consistent ? 0 : 1;
+  EXPECT_LE(alarms, 1);
+}
+
 TEST(Trace, AnInputsDelayMovesAllThatItDrives) {
   TimeSeries late = stroke();
   for (double& time : late.time_s) time += 0.08;

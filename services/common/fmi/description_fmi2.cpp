@@ -26,7 +26,7 @@ Variable read_variable(const DescriptionReader& reader, const pugi::xml_node& no
                     .causality = reader.one_of(node, "causality", FmiCausality::local),
                     .variability = reader.one_of(node, "variability", FmiVariability::continuous),
                     .unit = {},
-                    .description = reader.text(node, "description"),
+                    .description = reader.words(node, "description"),
                     .start = {},
                     .min = {},
                     .max = {},

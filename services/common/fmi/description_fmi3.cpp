@@ -67,7 +67,7 @@ Variable read_variable(const DescriptionReader& reader, const pugi::xml_node& no
                     .causality = causality,
                     .variability = reader.one_of(node, "variability", usual),
                     .unit = {},
-                    .description = reader.text(node, "description"),
+                    .description = reader.words(node, "description"),
                     .start = {},
                     .min = {},
                     .max = {},

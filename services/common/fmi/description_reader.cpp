@@ -1,9 +1,11 @@
 #include "services/common/fmi/description_reader.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <sstream>
 
 namespace sealwatch::fmi {
@@ -41,8 +43,45 @@ void DescriptionReader::refuse(const pugi::xml_node& at, std::string value, std:
                .advice = std::move(advice)}};
 }
 
+namespace {
+
+/// Of a tag of HTML at the begin of a text; 0 where there is none, as in "x<y and y>z".
+std::size_t length_of_tag(std::string_view text) {
+  static const std::set<std::string_view> kTags = {
+      "html", "head", "body", "p",          "br",    "hr", "b",  "i",  "u",  "em", "strong", "tt", "code", "pre",
+      "sub",  "sup",  "span", "blockquote", "h1",    "h2", "h3", "h4", "ul", "ol", "li",     "dl", "dt",   "dd",
+      "div",  "a",    "img",  "font",       "table", "tr", "td", "th", "h5", "h6", "small",  "big"};
+  const std::size_t end = text.find('>');
+  if (text.empty() || text[0] != '<' || end == std::string_view::npos) return 0;
+  std::string_view inside = text.substr(1, end - 1);
+  if (inside.starts_with('/')) inside.remove_prefix(1);
+  const std::size_t name = std::min(inside.find_first_of(" /"), inside.size());
+  const std::string_view rest = inside.substr(name);
+  return kTags.contains(inside.substr(0, name)) && (rest.size() < 3 || rest.find('=') != std::string_view::npos)
+             ? end + 1
+             : 0;
+}
+
+}  // namespace
+
 std::string DescriptionReader::text(const pugi::xml_node& node, const char* name) const {
   return node.attribute(name).value();
+}
+
+std::string DescriptionReader::words(const pugi::xml_node& node, const char* name) const {
+  const std::string all = text(node, name);
+  std::string plain;
+  for (std::size_t at = 0; at < all.size(); ++at) {
+    const std::size_t length = length_of_tag(std::string_view(all).substr(at));
+    if (length > 0) at += length - 1;
+    const bool blank = length > 0 || std::isspace(static_cast<unsigned char>(all[at])) != 0;
+    if (!blank)
+      plain += all[at];
+    else if (!plain.empty() && plain.back() != ' ')
+      plain += ' ';
+  }
+  if (plain.ends_with(' ')) plain.pop_back();
+  return plain;
 }
 
 std::string DescriptionReader::required(const pugi::xml_node& node, const char* name) const {

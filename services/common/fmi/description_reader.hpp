@@ -22,6 +22,8 @@ class DescriptionReader {
   [[noreturn]] void refuse(const pugi::xml_node& at, std::string value, std::string rule,
                            std::string advice = "export the FMU again, or ask its maker") const;
   [[nodiscard]] std::string text(const pugi::xml_node& node, const char* name) const;
+  /// What is written for people, which some tools mark up as HTML: the words alone, in one line.
+  [[nodiscard]] std::string words(const pugi::xml_node& node, const char* name) const;
   [[nodiscard]] std::string required(const pugi::xml_node& node, const char* name) const;
   [[nodiscard]] bool flag(const pugi::xml_node& node, const char* name) const;
   [[nodiscard]] std::optional<double> number(const pugi::xml_node& node, const char* name) const;

@@ -129,7 +129,9 @@ class PlantFileWriter {
         out_ << "  # Parameters that can be set once, under `settings` (sizes of arrays: import with --set):\n";
       out_ << "  #   " << in_comment(text::quoted(variable.name)) << ":";
       for (const double value : variable.start) out_ << " " << number(value);
-      out_ << "\n";
+      std::string items;
+      for (const Item& item : variable.items) text::add_to_list(items, number(item.value) + " " + item.name);
+      out_ << (items.empty() ? "" : "  (" + in_comment(items) + ")") << "\n";
     }
   }
 
@@ -239,7 +241,7 @@ class PlantFileWriter {
     for (std::size_t k = 0; k < rows_.states.size(); ++k) {
       const ImportRow& row = rows_.states[k];
       const double start = row.scale.to_si(start_.beginning.states[k]);
-      const double nominal = std::abs(row.scale.factor * start_.beginning.nominals[k]);
+      const double nominal = std::abs(row.scale.factor * nominal_of(k));
       const bool usual = std::isfinite(nominal) && nominal > 0.0;
       out_ << "  " << row.name << ": {variable: " << text::quoted(fmu_.name_of(row.element))
            << ", unit: " << text::quoted(row.unit)
@@ -248,6 +250,13 @@ class PlantFileWriter {
            << ", own: " << (!start_.linked[k] && shown_by_output(row) ? "true" : "false")
            << ", meaning: " << text::quoted(row.meaning) << "}" << unit_asked_for(row) << "\n";
     }
+  }
+
+  // Many binaries answer 1, as if nothing were known, whatever their description says.
+  [[nodiscard]] double nominal_of(std::size_t state) const {
+    const double of_binary = start_.beginning.nominals[state];
+    const std::optional<double> described = fmu_.variables[rows_.states[state].element.variable].nominal;
+    return of_binary == 1.0 ? described.value_or(of_binary) : of_binary;
   }
 
   [[nodiscard]] std::span<const ImportRow> recorded() const {

@@ -122,7 +122,7 @@ ModelDescription read_root(const DescriptionReader& reader, const pugi::xml_node
   description.model_name = reader.required(root, "modelName");
   description.token = reader.required(root, fmi2 ? "guid" : "instantiationToken");
   description.tool = reader.text(root, "generationTool");
-  description.description = reader.text(root, "description");
+  description.description = reader.words(root, "description");
   description.model_exchange = read_interface(reader, root.child("ModelExchange"), fmi2);
   description.co_simulation = read_interface(reader, root.child("CoSimulation"), fmi2);
   description.scheduled_execution = !root.child("ScheduledExecution").empty();

@@ -138,6 +138,35 @@ TEST(ImportFmu, OfThousandsOfInputsAndOutputsSomeAreListedAndTheRestCounted) {
                           HasSubstr("here and in fmu.inputs"), HasSubstr("here and in fmu.variables")));
 }
 
+TEST(ImportFmu, WordsThatAreMarkedUpAreWrittenPlain) {
+  const TestFolder folder;
+  TestUnit unit = spring_return("fmu_spring_return2");
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    unit.variables.replace(unit.variables.find(from), from.size(), to);
+  };
+  replace(
+      "name=\"M\"",
+      "name=\"M\" description=\"&lt;html&gt;&lt;p class='a'&gt;Masse&lt;br/&gt;des&#10;  &lt;b&gt;Schiebers&lt;/b&gt; "
+      "m&lt;n &gt; 0&lt;/p&gt;&lt;/html&gt;\"");
+  EXPECT_THAT(imported(folder, unit), HasSubstr("meaning: \"Masse des Schiebers m<n > 0\""));
+}
+
+TEST(ImportFmu, ItemsOfAnEnumerationAndTheSizeOfAStateAreTheDescriptions) {
+  const TestFolder folder;
+  TestUnit unit = spring_return("fmu_spring_return2");
+  unit.interfaces =
+      "<ModelExchange modelIdentifier=\"model\"/><TypeDefinitions><SimpleType name=\"modes\"><Enumeration>"
+      "<Item name=\"free\" value=\"1\"/><Item name=\"very stiff\" value=\"2\"/></Enumeration></SimpleType>"
+      "</TypeDefinitions>\n";
+  unit.variables +=
+      "<ScalarVariable name=\"mode\" valueReference=\"40\" causality=\"parameter\" variability=\"fixed\">"
+      "<Enumeration declaredType=\"modes\" start=\"2\"/></ScalarVariable>\n";
+  unit.variables.insert(unit.variables.find("unit=\"m\""), "nominal=\"0.05\" ");  // where the binary answers 1
+  EXPECT_THAT(imported(folder, unit), AllOf(HasSubstr("\"mode\": 2.0  (1.0 free, 2.0 very stiff)"),
+                                            HasSubstr("x: {variable: \"x\", unit: \"m\", start: [position, "
+                                                      "\"0.0[m]\"], size: 0.05,")));
+}
+
 TEST(ImportFmu, ANameOfTwoVariablesIsRefused) {
   const TestFolder folder;
   for (const std::string name : {"M", "position", "x"}) {

@@ -264,6 +264,21 @@ TestUnit arrays() {
   return unit;
 }
 
+TestUnit masses() {
+  TestUnit unit{.binary = "fmu_masses3", .variables = {}, .structure = {}, .interfaces = {}, .version = {}};
+  const auto array = [](const std::string& name, int reference, const std::string& attributes, int size) {
+    return "<Float64 name=\"" + name + "\" valueReference=\"" + std::to_string(reference) + "\" " + attributes +
+           "><Dimension start=\"" + std::to_string(size) + "\"/></Float64>\n";
+  };
+  const std::string parameter = "causality=\"parameter\" variability=\"fixed\"";
+  unit.variables = array("x", 1, "start=\"0 0 0 0\"", 4) + array("der(x)", 2, "derivative=\"1\"", 4) +
+                   array("m", 3, parameter + " start=\"12 8\"", 2) +
+                   array("f", 4, "causality=\"input\" unit=\"N\" start=\"0 0\"", 2) +
+                   array("y", 5, "causality=\"output\" unit=\"mm\"", 2) + real3("k", 6, parameter + " start=\"5e4\"");
+  unit.structure = "<Output valueReference=\"5\"/><ContinuousStateDerivative valueReference=\"2\"/>\n";
+  return unit;
+}
+
 TestFolder::TestFolder() {
   std::string name = (std::filesystem::temp_directory_path() / "sealwatch_test_XXXXXX").string();
   if (mkdtemp(name.data()) == nullptr) std::abort();

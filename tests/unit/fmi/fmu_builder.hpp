@@ -46,6 +46,8 @@ struct TestUnit {
 [[nodiscard]] TestUnit mixed(const std::string& binary);
 /// Arrays whose size is a structural parameter.
 [[nodiscard]] TestUnit arrays();
+/// Two masses whose states, parameters, inputs and outputs are arrays.
+[[nodiscard]] TestUnit masses();
 
 /// A folder of one test, removed at its end; also tells where sealwatch-fmu-host is.
 class TestFolder {

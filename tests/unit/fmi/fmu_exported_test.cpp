@@ -495,19 +495,91 @@ parameters:
   TestUnit wide = mixed("fmu_mixed3");
   wide.variables.replace(wide.variables.find("<Int32 name=\"u_integer\""), 6, "<Int64");
   EXPECT_THAT(refusal(wide, typed_plant()), AllOf(HasSubstr("u_integer"), HasSubstr("int64")));
-  EXPECT_THAT(refusal(arrays(), R"yaml(
+}
+
+std::string masses_with(const std::string& inputs, const std::string& parameters) {
+  return R"yaml(
+meaning: two masses
+fmu:
+  file: model.fmu
+  inputs: )yaml" +
+         inputs + "\n  parameters: " + parameters + R"yaml(
+  variables: {place: {variable: "y[2]", unit: m}}
+inputs:
+  pull: {unit: N}
+  push: {unit: N}
+outputs:
+  position: {value: place, unit: m}
+  first: {value: s_1, unit: m}
+parameters:
+  m_1: {value: 12.0, unit: kg}
+  m_2: {value: 8.0, unit: kg}
+states:
+  s_1: {variable: "x[1]", unit: m, start: "0[m]", own: false, size: 0.01}
+  v_1: {variable: "x[2]", unit: m/s, start: "0[m/s]", own: false, size: 0.1}
+  s_2: {variable: "x[3]", unit: m, start: "0[m]", own: false, size: 0.01}
+  v_2: {variable: "x[4]", unit: m/s, start: "0[m/s]", own: false, size: 0.1}
+elements:
+  bearing:
+    sites:
+      - {kind: piston_force, adds_to: {v_1: -1/m_1}, signals: {speed: v_1, position: s_1}}
+  guide:
+    sites:
+      - {kind: piston_force, symbol: lost, signals: {speed: v_2, position: s_2}}
+law_sizes: {N: 0.02, m: 1.0, m/s: 10.0, N/m: 0.02, N/m2: 0.02, N s/m: 0.01, N s2/m2: 1.0e-3}
+)yaml";
+}
+
+TEST(ExplainedFmu, OfArraysIsHandedBackWithThem) {
+  const auto explain = [](AssetConfig& asset) {
+    asset.parameters["m_1"].value = 15.0;
+    asset.parameters["m_2"].value = 9.0;
+    asset.physics = {term("coulomb_friction", "bearing", {{"F_c", 20.0}, {"v_s", 1e-3}}),
+                     term("coulomb_friction", "guide", {{"F_c", 10.0}, {"v_s", 1e-3}})};
+  };
+  // Elements that bring the plant's values; some of an array that follow from them, so that the others do as well.
+  const Exported kept(
+      masses(), masses_with("{\"f[1]\": 50*pull, \"f[2]\": push - lost}", "{\"m[1]\": m_1, \"m[2]\": m_2}"), explain);
+  ASSERT_EQ(kept.refusal(), "");
+  EXPECT_THAT(kept.text(),
+              AllOf(HasSubstr("\"m[1]\": m_1"), HasSubstr("\"m[2]\": m_2"), HasSubstr("value: 15.0"),
+                    HasSubstr("value: 9.0"), HasSubstr("\"pull\": pull"), testing::Not(HasSubstr("f[1]"))));
+  expect_same(kept, "position", "position", 1e-8);
+  const Exported following(
+      masses(),
+      masses_with("{\"f[1]\": 50*pull, \"f[2]\": push - lost}", "{\"m[1]\": m_1, \"m[2]\": \"2*m_2 - 9[kg]\"}"),
+      explain);
+  ASSERT_EQ(following.refusal(), "");
+  expect_same(following, "position", "position", 1e-8);
+  EXPECT_NEAR(following.simulated_again("position", &ramps)(200, 0), kept.simulated_again("position", &ramps)(200, 0),
+              1e-8);
+  const Exported alone(masses(), masses_with("{\"f[1]\": pull, \"f[2]\": push - lost}", "{\"m[2]\": m_1 + m_2}"),
+                       explain);
+  ASSERT_EQ(alone.refusal(), "");
+  EXPECT_THAT(alone.text(),
+              AllOf(HasSubstr("\"f[1]\": f_1"), HasSubstr("\"f[2]\": f_2"), testing::Not(HasSubstr("pull"))));
+  expect_same(alone, "position", "position", 1e-8);
+}
+
+TEST(ExplainedFmu, OfAnArrayOfAStructuralSizeIsHandedBack) {
+  const Exported exported(arrays(), R"yaml(
 meaning: an array of states
 fmu:
   file: model.fmu
+  parameters: {"x0[1]": a, "x0[2]": b}
   variables: {y: {variable: y, unit: "1"}}
 outputs:
   y: {value: y, unit: "1"}
+parameters:
+  a: {value: 1.0, unit: "1"}
+  b: {value: 2.0, unit: "1"}
 states:
-  x_1: {variable: "x[1]", unit: "1", start: "1[1]", size: 1.0, own: false}
-  x_2: {variable: "x[2]", unit: "1", start: "2[1]", size: 1.0, own: false}
-)yaml"),
-              AllOf(HasSubstr("has an array, around which sealwatch writes no FMU: x"),
-                    HasSubstr("export the model as FMI 2.0"), testing::Not(HasSubstr("leave it out"))));
+  x_1: {variable: "x[1]", unit: "1", start: fmu, size: 1.0}
+  x_2: {variable: "x[2]", unit: "1", start: fmu, size: 1.0}
+)yaml",
+                          [](AssetConfig& asset) { asset.parameters["b"].value = 5.0; });
+  ASSERT_EQ(exported.refusal(), "");
+  EXPECT_NEAR(exported.simulated_again("y", &ramps)(100, 0), 6.0 * std::exp(-1.0), 1e-6);
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ class WrapperExporter {
                       .advice = std::move(advice)});
   }
 
-  /// FMI 3.0 has more types and arrays; what goes in and out of the plant is to be what FMI 2.0 has too.
+  /// FMI 3.0 has more types; what goes in and out of the plant is to be what FMI 2.0 has too, or an array of its reals.
   /// And what to do: a state cannot be left out, nor can what is set.
   struct Refused {
     std::string fault, advice;
@@ -84,7 +84,9 @@ class WrapperExporter {
         "export the model as FMI 2.0 from its tool, where arrays are single variables; the report's "
         "laws.c and laws.mo have the laws for the model itself";
     const auto fault = [](const Variable& variable, bool text_too) -> std::string {
-      if (variable.size != 1) return "has an array, around which sealwatch writes no FMU: " + variable.name;
+      const bool reals = variable.type == FmiType::float64 && kind_of(variable) == std::string_view("kReal");
+      if (variable.size != 1 && !reals)
+        return "has an array that is none of continuous reals, around which sealwatch writes no FMU: " + variable.name;
       const bool plain = variable.type == FmiType::float64 || variable.type == FmiType::int32 ||
                          variable.type == FmiType::boolean || (text_too && variable.type == FmiType::string);
       if (plain && variable.causality != FmiCausality::structuralParameter) return "";
@@ -136,14 +138,20 @@ class WrapperExporter {
       outputs_.push_back(parts_.outputs.values[k]);
     }
     for (const DrivenVariable& input : ports_.inputs)
-      if (!is_kept(channels_, input)) description_.local_inputs.push_back(input.variable);
+      if (!is_kept(channels_, input)) add_once(description_.local_inputs, input.variable);
     for (const DrivenVariable& parameter : ports_.parameters)
-      if (!is_kept(values_, parameter)) description_.calculated.push_back(parameter.variable);
+      if (!is_kept(values_, parameter)) add_once(description_.calculated, parameter.variable);
+  }
+
+  static void add_once(std::vector<std::size_t>& list, std::size_t one) {
+    if (std::ranges::find(list, one) == list.end()) list.push_back(one);
   }
 
   /// Whether the variable itself brings a value of the plant.
   static bool is_kept(const std::vector<WrapperPort>& ports, const DrivenVariable& variable) {
-    return std::ranges::find(ports, variable.port.reference, &WrapperPort::reference) != ports.end();
+    return std::ranges::any_of(ports, [&](const WrapperPort& port) {
+      return port.reference == variable.port.reference && port.element == variable.port.element;
+    });
   }
 
   /// The FMU's input that is this input of the plant; one that changes at events alone before others, which can follow.
@@ -161,7 +169,8 @@ class WrapperExporter {
       if (same != nullptr) {
         const Variable& variable = block_.file->description().variables[same->variable];
         channels_.push_back(same->port);
-        channel_starts_.push_back(same->port.unit.to_si(variable.start.empty() ? 0.0 : variable.start[0]));
+        channel_starts_.push_back(
+            same->port.unit.to_si(variable.start.empty() ? 0.0 : variable.start[same->port.element]));
         continue;
       }
       const ChannelDescription* channel = plant_.description.find_channel(plant_.inputs[k].channel);
@@ -199,7 +208,8 @@ class WrapperExporter {
         continue;
       }
       values_.push_back(same->port);
-      description_.starts.emplace_back(same->variable, same->port.unit.from_si(value_starts_.back()));
+      description_.starts.push_back(
+          {same->variable, same->port.element, same->port.unit.from_si(value_starts_.back())});
     }
     for (const PhysicsParameter& row : terms_.parameters) {
       value_starts_.push_back(row.setting.value);
@@ -213,8 +223,8 @@ class WrapperExporter {
     out << "static const Port " << name << "[] = {";
     for (const WrapperPort& port : ports)
       out << "{" << port.reference << "u, " << port.kind << ", " << c_number(port.unit.factor) << ", "
-          << c_number(port.unit.offset) << "}, ";
-    out << "{0u, kReal, 1.0, 0.0}};\n";
+          << c_number(port.unit.offset) << ", " << port.element << ", " << port.size << "}, ";
+    out << "{0u, kReal, 1.0, 0.0, 0, 1}};\n";
     return out.str();
   }
   [[nodiscard]] static std::string table(const char* name, const std::vector<double>& values) {
@@ -243,13 +253,34 @@ class WrapperExporter {
       const Variable& variable = *block_.file->description().find(name);
       const bool is_text = variable.type == FmiType::string;
       const double value = text == "true" ? 1.0 : is_text ? 0.0 : std::strtod(text.c_str(), nullptr);
-      out << "{{" << variable.reference << "u, " << (is_text ? "kText" : kind_of(variable)) << ", 1.0, 0.0}, "
+      out << "{{" << variable.reference << "u, " << (is_text ? "kText" : kind_of(variable)) << ", 1.0, 0.0, 0, 1}, "
           << c_number(value) << ", \"" << std::oct;
       for (const char letter : is_text ? text : std::string())
         out << "\\" << static_cast<int>(static_cast<unsigned char>(letter)) << "\" \"";
       out << std::dec << "\"}, ";
     }
-    out << "{{0u, kReal, 1.0, 0.0}, 0.0, NULL}};\n";
+    out << "{{0u, kReal, 1.0, 0.0, 0, 1}, 0.0, NULL}};\n";
+    return out.str();
+  }
+
+  // Of the arrays that can be set, all values: an array is set whole.
+  [[nodiscard]] std::string arrays() const {
+    std::ostringstream out;
+    std::vector<double> starts;
+    std::size_t largest = 1;
+    out << "static const Array arrays[] = {";
+    for (const Variable& variable : block_.file->description().variables) {
+      if (variable.type != FmiType::float64 || variable.size == 1) continue;
+      largest = std::max(largest, variable.size);
+      const bool is_set = variable.causality == FmiCausality::input || variable.causality == FmiCausality::parameter;
+      out << "{" << variable.reference << "u, " << variable.size << ", "
+          << (is_set ? std::to_string(starts.size()) : "-1") << "}, ";
+      for (std::size_t k = 0; is_set && k < variable.size; ++k)
+        starts.push_back(variable.start.empty() ? 0.0 : variable.start[k]);
+    }
+    out << "{0u, -1, -1}};\n"
+        << table("start_arrays", starts) << "#define IN_ARRAYS " << starts.size() << "\n#define LARGEST " << largest
+        << "\n";
     return out.str();
   }
 
@@ -277,13 +308,15 @@ class WrapperExporter {
       out << "#define " << name << " " << count << "\n";
     out << "#define OWN " << ports_.own << "u\n\n"
         << "enum { kReal, kDiscrete, kInteger, kBoolean, kText };\n"
-           "typedef struct {\n  unsigned reference;\n  int kind;\n  double factor, offset;\n} Port;\n"
+           "typedef struct {\n  unsigned reference;\n  int kind;\n  double factor, offset;\n  int element, size;\n} "
+           "Port;\n"
+           "typedef struct {\n  unsigned reference;\n  int size, first;\n} Array;\n"
            "typedef struct {\n  Port port;\n  double value;\n  const char* text;\n} Setting;\n"
            "static int inner_values(void* model);\n\n"
         << table("state_ports", ports_.states) << table("rate_ports", ports_.rates)
         << table("variable_ports", ports_.variables) << table("input_ports", inputs)
         << table("calculated_ports", calculated) << table("channel_ports", channels_)
-        << table("parameter_ports", values_) << settings() << table("start_channels", channel_starts_)
+        << table("parameter_ports", values_) << arrays() << settings() << table("start_channels", channel_starts_)
         << table("start_parameters", value_starts_) << table("hidden_sizes", terms_.hidden_scales) << "\n";
     return out.str();
   }

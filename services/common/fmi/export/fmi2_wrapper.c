@@ -13,8 +13,11 @@
  *   Port, Setting, and their kinds: kReal, kDiscrete (a real that changes at events alone), kInteger, kBoolean, kText
  *   static const Port state_ports[], rate_ports[], variable_ports[], input_ports[], calculated_ports[], channel_ports[],
  *                     parameter_ports[];
+ *   static const Array arrays[]                        of reals, which FMI 3.0 alone has: their sizes and, of those that can
+ *                                                      be set, their place among IN_ARRAYS numbers, else -1; ends with a
+ *                                                      size of -1; LARGEST of the sizes
  *   static const Setting settings[]                    ends with a text that is NULL
- *   static const double start_channels[], start_parameters[], hidden_sizes[];
+ *   static const double start_channels[], start_parameters[], start_arrays[], hidden_sizes[];
  *   static void plant_rates, plant_inputs, plant_parameters, plant_outputs
  *       (double t, const double* x, const double* u, const double* p, const double* e, double* result);
  *   static int model_laws(void* model, double t, const double* x, const double* u, const double* p, double* e,
@@ -108,22 +111,45 @@ typedef int SetVectorType(void*, const double*, size_t);
 static struct {
 #define FIELD(type, name) type##Type* name;
   EACH_FUNCTION(FIELD) EACH_RARE_FUNCTION(FIELD)
+  int (*GetArray)(void*, unsigned, double*, size_t);
+  int (*SetArray)(void*, unsigned, const double*, size_t);
 } inner;
 
 typedef struct {
   void* inner;
   int mode, known; /* known: x, e, dx are those of the present point */
   double time, x[ROOM(STATES + HIDDEN)], dx[ROOM(STATES + HIDDEN)], u[ROOM(CHANNELS)], p[ROOM(PARAMETERS)], e[ROOM(SITES)];
+  double arrays[ROOM(IN_ARRAYS)], one_array[LARGEST];
 } Model;
 
 static double to_si(const Port* port, double value) { return port->factor * value + port->offset; }
 static double from_si(const Port* port, double value) { return (value - port->offset) / port->factor; }
 static int good(int status) { return status == kOk || status == kWarning; }
 
+/* The array of that reference; NULL: it is of a single number. */
+static const Array* array_of(unsigned reference) {
+  const Array* array = arrays;
+  while (array->size >= 0 && array->reference != reference) ++array;
+  return array->size >= 0 ? array : NULL;
+}
+static int set_real_port(Model* m, const Port* port, double value) {
+  const Array* array = port->size == 1 ? NULL : array_of(port->reference);
+  if (array == NULL) return inner.SetReal(m->inner, &port->reference, 1, &value);
+  m->arrays[array->first + port->element] = value;
+  return inner.SetArray(m->inner, port->reference, m->arrays + array->first, (size_t)array->size);
+}
+static int get_real_port(Model* m, const Port* port, double* value) {
+  int status;
+  if (port->size == 1) return inner.GetReal(m->inner, &port->reference, 1, value);
+  status = inner.GetArray(m->inner, port->reference, m->one_array, (size_t)port->size);
+  *value = m->one_array[port->element];
+  return status;
+}
+
 static int set_port(Model* m, const Port* port, double si) {
   const double value = from_si(port, si);
   const int whole = (int)(value < 0.0 ? value - 0.5 : value + 0.5), yes = value != 0.0;
-  if (port->kind == kReal || port->kind == kDiscrete) return inner.SetReal(m->inner, &port->reference, 1, &value);
+  if (port->kind == kReal || port->kind == kDiscrete) return set_real_port(m, port, value);
   if (port->kind == kInteger) return inner.SetInteger(m->inner, &port->reference, 1, &whole);
   return inner.SetBoolean(m->inner, &port->reference, 1, &yes);
 }
@@ -131,7 +157,7 @@ static int get_port(Model* m, const Port* port, double* si) {
   double value = 0.0;
   int whole = 0, status;
   if (port->kind == kReal || port->kind == kDiscrete) {
-    status = inner.GetReal(m->inner, &port->reference, 1, &value);
+    status = get_real_port(m, port, &value);
   } else {
     status = (port->kind == kInteger ? inner.GetInteger : inner.GetBoolean)(m->inner, &port->reference, 1, &whole);
     value = whole;
@@ -150,8 +176,7 @@ static int inner_values(void* model) {
     if (!good(set_port(m, &input_ports[k], inputs[k]))) return kError;
   if (m->mode == kRunning && STATES > 0 && !good(inner.GetDerivatives(m->inner, rates, STATES))) return kError;
   for (k = 0; k < STATES; ++k) {
-    const unsigned reference = rate_ports[k].reference;
-    if (m->mode != kRunning && !good(inner.GetReal(m->inner, &reference, 1, &rates[k]))) return kError;
+    if (m->mode != kRunning && !good(get_real_port(m, &rate_ports[k], &rates[k]))) return kError;
     m->e[k] = state_ports[k].factor * rates[k];
   }
   for (k = 0; k < VARIABLES; ++k)
@@ -166,7 +191,7 @@ static int refresh(Model* m) {
   if (m->known || m->mode == kInstantiated) return kOk;
   if (m->mode == kRunning && STATES > 0 && !good(inner.GetContinuousStates(m->inner, x, STATES))) return kError;
   for (k = 0; k < STATES; ++k) {
-    if (m->mode != kRunning && !good(inner.GetReal(m->inner, &state_ports[k].reference, 1, &x[k]))) return kError;
+    if (m->mode != kRunning && !good(get_real_port(m, &state_ports[k], &x[k]))) return kError;
     m->x[k] = to_si(&state_ports[k], x[k]);
   }
   memset(m->e, 0, sizeof m->e);
@@ -194,6 +219,7 @@ static int reset(Model* m) {
   memset(m->x, 0, sizeof m->x), memset(m->dx, 0, sizeof m->dx), memset(m->e, 0, sizeof m->e);
   memcpy(m->u, start_channels, CHANNELS * sizeof(double));
   memcpy(m->p, start_parameters, PARAMETERS * sizeof(double));
+  memcpy(m->arrays, start_arrays, IN_ARRAYS * sizeof(double));
   for (setting = settings; setting->text != NULL; ++setting) {
     if (setting->port.kind == kText
             ? inner.SetString == NULL || !good(inner.SetString(m->inner, &setting->port.reference, 1, &setting->text))
@@ -376,20 +402,24 @@ API int fmi2GetEventIndicators(void* c, double* z, size_t n) {
   return inner.GetEventIndicators(((Model*)c)->inner, z, n);
 }
 
+static int is_port(const Port* port, unsigned reference, int element) {
+  return port->reference == reference && port->element == element;
+}
+
 /* A value that the other unit does not have, or has without the laws; 0: the other unit's is right. */
-static int own_value(Model* m, unsigned reference, double* value) {
+static int own_value(Model* m, unsigned reference, int element, double* value) {
   double outputs[ROOM(OUTPUTS)];
   int k;
   for (k = 0; k < STATES; ++k)
     if (state_ports[k].reference == reference) return 0;
   for (k = 0; k < CHANNELS; ++k)
-    if (channel_ports[k].kind == kReal && channel_ports[k].reference == reference)
+    if (channel_ports[k].kind == kReal && is_port(&channel_ports[k], reference, element))
       return *value = from_si(&channel_ports[k], m->u[k]), 1;
   for (k = 0; k < PARAMETERS; ++k)
-    if (parameter_ports[k].kind == kReal && parameter_ports[k].reference == reference)
+    if (parameter_ports[k].kind == kReal && is_port(&parameter_ports[k], reference, element))
       return *value = from_si(&parameter_ports[k], m->p[k]), 1;
   for (k = 0; k < STATES; ++k)
-    if (rate_ports[k].reference == reference) return *value = m->dx[k] / state_ports[k].factor, 1;
+    if (is_port(&rate_ports[k], reference, element)) return *value = m->dx[k] / state_ports[k].factor, 1;
   if (reference < OWN) return 0;
   k = (int)(reference - OWN);
   if (k < HIDDEN) return *value = m->x[STATES + k], 1;
@@ -406,7 +436,7 @@ API int fmi2GetReal(void* c, const unsigned* references, size_t n, double* value
   if (n > 0 && refresh(m) != kOk) return kError;
   for (k = 0; k < n; ++k) {
     int status = kOk;
-    if (own_value(m, references[k], &values[k]) == 0)
+    if (own_value(m, references[k], 0, &values[k]) == 0)
       status = inner.GetReal(m->inner, &references[k], 1, &values[k]);
     if (!good(status)) return status;
   }
@@ -416,14 +446,14 @@ API int fmi2GetReal(void* c, const unsigned* references, size_t n, double* value
 static int same_kind(int own, int asked) { return own == asked || (own == kDiscrete && asked == kReal); }
 
 /* Keeps a value that drives the plant. Returns whether the other unit is not to have it: it gets what follows from it. */
-static int keep(Model* m, int kind, unsigned reference, double value, int* status) {
+static int keep(Model* m, int kind, unsigned reference, int element, double value, int* status) {
   int k;
   m->known = 0;
   for (k = 0; k < CHANNELS; ++k)
-    if (same_kind(channel_ports[k].kind, kind) && channel_ports[k].reference == reference)
+    if (same_kind(channel_ports[k].kind, kind) && is_port(&channel_ports[k], reference, element))
       return m->u[k] = to_si(&channel_ports[k], value), channel_ports[k].kind == kReal;
   for (k = 0; k < PARAMETERS; ++k)
-    if (parameter_ports[k].kind == kind && parameter_ports[k].reference == reference) {
+    if (parameter_ports[k].kind == kind && is_port(&parameter_ports[k], reference, element)) {
       m->p[k] = to_si(&parameter_ports[k], value);
       *status = push_parameters(m);
       return reference >= OWN || *status != kOk;
@@ -436,7 +466,7 @@ API int fmi2SetReal(void* c, const unsigned* references, size_t n, const double*
   size_t k;
   for (k = 0; k < n; ++k) {
     int status = kOk;
-    if (!keep(c, kReal, references[k], values[k], &status))
+    if (!keep(c, kReal, references[k], 0, values[k], &status))
       status = inner.SetReal(((Model*)c)->inner, &references[k], 1, &values[k]);
     if (!good(status)) return status;
   }
@@ -450,7 +480,7 @@ API int fmi2SetReal(void* c, const unsigned* references, size_t n, const double*
   API int fmi2Set##name(void* c, const unsigned* references, size_t n, const int* values) {     \
     size_t k;                                                                                   \
     int status = kOk;                                                                           \
-    for (k = 0; k < n && good(status); ++k) keep(c, kind, references[k], values[k], &status);   \
+    for (k = 0; k < n && good(status); ++k) keep(c, kind, references[k], 0, values[k], &status); \
     return good(status) ? inner.Set##name(((Model*)c)->inner, references, n, values) : status;  \
   }
 #if !defined(FMI3)

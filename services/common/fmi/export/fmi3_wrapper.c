@@ -1,7 +1,7 @@
 /* The functions of FMI 3.0 for Model Exchange around another unit of FMI 3.0, with laws added: fmi2_wrapper.c, which stands
  * before this text, does the work. Here what it calls of the other unit becomes a call of FMI 3.0, and what importers call
  * of FMI 3.0 becomes a call of its functions. Variables that drive the plant are single numbers of the types Float64, Int32
- * and Boolean; all others are the other unit's alone. */
+ * and Boolean, and arrays of Float64; all others are the other unit's alone. */
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -81,6 +81,12 @@ static int get_real(void* c, const unsigned* references, size_t n, double* value
 }
 static int set_real(void* c, const unsigned* references, size_t n, const double* values) {
   return inner3.SetFloat64(c, references, n, values, n);
+}
+static int get_array(void* c, unsigned reference, double* values, size_t size) {
+  return inner3.GetFloat64(c, &reference, 1, values, size);
+}
+static int set_array(void* c, unsigned reference, const double* values, size_t size) {
+  return inner3.SetFloat64(c, &reference, 1, values, size);
 }
 static int get_integer(void* c, const unsigned* references, size_t n, int* values) {
   size_t k;
@@ -163,6 +169,7 @@ static const char* look_up(void* library) {
   if (inner.GetDerivatives == NULL) missing = "its function fmi3GetContinuousStateDerivatives";
   inner.Terminate = (PlainType*)symbol(library, "fmi3Terminate"); /* what few tools call it may lack */
   inner.Reset = (PlainType*)symbol(library, "fmi3Reset");
+  inner.GetArray = get_array, inner.SetArray = set_array;
   inner.GetReal = get_real, inner.SetReal = set_real, inner.GetInteger = get_integer, inner.SetInteger = set_integer;
   inner.GetBoolean = get_boolean, inner.SetBoolean = set_boolean, inner.SetString = set_text;
   inner.NewDiscreteStates = new_discrete_states, inner.CompletedIntegratorStep = completed_step;
@@ -235,15 +242,43 @@ EXPORT int fmi3GetNumberOfEventIndicators(void* c, size_t* n) {
                                                    : inner3.GetNumberOfEventIndicators(((Model*)c)->inner, n);
 }
 
-/* Arrays are the other unit's alone. */
+/* An array comes from the other unit, and elements that are this one's own take their place in it. */
+static int get_whole(Model* m, const Array* array, double* values) {
+  const int status = inner.GetArray(m->inner, array->reference, values, (size_t)array->size);
+  int k;
+  for (k = 0; k < array->size; ++k) own_value(m, array->reference, k, &values[k]);
+  return status;
+}
+static int set_whole(Model* m, const Array* array, const double* values) {
+  int status = kOk, k;
+  m->known = 0;
+  if (array->first >= 0) memcpy(m->arrays + array->first, values, (size_t)array->size * sizeof *values);
+  for (k = 0; k < array->size && good(status); ++k) keep(m, kReal, array->reference, k, values[k], &status);
+  return good(status) ? inner.SetArray(m->inner, array->reference, values, (size_t)array->size) : status;
+}
 EXPORT int fmi3GetFloat64(void* c, const Ref* references, size_t n, double* values, size_t size) {
-  if (size == n) return fmi2GetReal(c, references, n, values);
-  return refresh(c) != kOk ? kError : inner3.GetFloat64(((Model*)c)->inner, references, n, values, size);
+  size_t k, done = 0;
+  int status = n > 0 && refresh(c) != kOk ? kError : kOk;
+  for (k = 0; k < n && good(status); ++k) {
+    const Array* array = array_of(references[k]);
+    const size_t count = array == NULL ? 1 : (size_t)array->size;
+    if (count > size - done) return kError;
+    status = array == NULL ? fmi2GetReal(c, &references[k], 1, values + done) : get_whole(c, array, values + done);
+    done += count;
+  }
+  return status;
 }
 EXPORT int fmi3SetFloat64(void* c, const Ref* references, size_t n, const double* values, size_t size) {
-  if (size == n) return fmi2SetReal(c, references, n, values);
-  ((Model*)c)->known = 0;
-  return inner3.SetFloat64(((Model*)c)->inner, references, n, values, size);
+  size_t k, done = 0;
+  int status = kOk;
+  for (k = 0; k < n && good(status); ++k) {
+    const Array* array = array_of(references[k]);
+    const size_t count = array == NULL ? 1 : (size_t)array->size;
+    if (count > size - done) return kError;
+    status = array == NULL ? fmi2SetReal(c, &references[k], 1, values + done) : set_whole(c, array, values + done);
+    done += count;
+  }
+  return status;
 }
 #define PASSED_ON(type, name)                                                                                   \
   EXPORT int fmi3Get##name(void* c, const Ref* references, size_t n, type* values, size_t size) {                \
@@ -262,7 +297,7 @@ EXPORT int fmi3SetFloat64(void* c, const Ref* references, size_t n, const double
   EXPORT int fmi3Set##name(void* c, const Ref* references, size_t n, const type* values, size_t size) {        \
     size_t k;                                                                                                  \
     int status = kOk;                                                                                          \
-    for (k = 0; size == n && k < n && good(status); ++k) keep(c, kind, references[k], values[k], &status);     \
+    for (k = 0; size == n && k < n && good(status); ++k) keep(c, kind, references[k], 0, values[k], &status);  \
     return good(status) ? set_##name(c, references, n, values, size) : status;                                 \
   }
 EACH_OTHER_TYPE(PASSED_ON) EACH_OTHER_TYPE(SET_ALONE)

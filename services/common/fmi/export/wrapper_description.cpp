@@ -3,6 +3,7 @@
 #include <array>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <pugixml.hpp>
 #include <set>
 #include <sstream>
@@ -75,6 +76,17 @@ class Rewriter {
     set(text ? node.child("Start") : node, text ? "value" : "start", value);
   }
 
+  // All of an array's, each as the description or an earlier call has it.
+  void set_element_of_start(const ChangedStart& start, const Variable& variable) {
+    std::vector<double>& values = array_starts_[start.variable];
+    if (values.empty()) values = variable.start;
+    values.resize(variable.size, 0.0);
+    values[start.element] = start.value;
+    std::string all;
+    for (const double value : values) all += (all.empty() ? "" : " ") + c_number(value);
+    set_start(start.variable, all);
+  }
+
   void head() {
     set(root_, third_ ? "instantiationToken" : "guid", own_.token);
     set(root_, "modelName", std::string(root_.attribute("modelName").value()) + "_explained");
@@ -110,7 +122,13 @@ class Rewriter {
   }
 
   void change_variables() {
-    for (const auto& [place, value] : own_.starts) set_start(place, c_number(value));
+    for (const ChangedStart& start : own_.starts) {
+      const Variable& variable = inner_.description().variables[start.variable];
+      if (variable.size > 1)
+        set_element_of_start(start, variable);
+      else
+        set_start(start.variable, c_number(start.value));
+    }
     for (const std::size_t place : own_.local_inputs) {
       set(variables_[place], "causality", "local");
       typed(place).remove_attribute("start");
@@ -236,6 +254,7 @@ class Rewriter {
   xml_node root_;
   std::vector<xml_node> variables_;
   std::set<std::string> names_;
+  std::map<std::size_t, std::vector<double>> array_starts_;
 };
 
 }  // namespace

@@ -18,11 +18,17 @@ struct OwnVariable {
   bool takes_alias = false;  ///< it is what an alias of its name stands for in the FMU
 };
 
+/// Of an element of a variable of the FMU, by its place in the description.
+struct ChangedStart {
+  std::size_t variable = 0, element = 0;
+  double value = 0.0;
+};
+
 struct WrapperVariables {
   std::string token, identifier;
   std::vector<OwnVariable> hidden, hidden_rates, inputs, parameters, outputs;
-  std::vector<std::pair<std::size_t, double>> starts;  ///< of the FMU's parameters, by place in its description
-  std::vector<std::size_t> local_inputs, calculated;   ///< of the FMU: inputs and parameters that follow from others
+  std::vector<ChangedStart> starts;                   ///< of the FMU's parameters
+  std::vector<std::size_t> local_inputs, calculated;  ///< of the FMU: inputs and parameters that follow from others
 };
 
 [[nodiscard]] Result<std::string> wrapper_description(const FmuFile& inner, const WrapperVariables& own);

@@ -42,6 +42,7 @@ class Finder {
     for (std::size_t k = 0; k < block_.parameters.size(); ++k)
       found_.parameters.push_back(driven(block_.setup.parameters, block_.parameters[k], FmiCausality::parameter,
                                          outputs_ + block_.inputs.size() + k));
+    for (auto* list : {&found_.inputs, &found_.parameters}) keep_arrays_whole(*list);
     for (const DrivenVariable& input : found_.inputs)
       if (input.port.kind != std::string_view("kReal") && (!input.alone || input.with_laws))
         return fail(Error{.file = block_.file->name(),
@@ -50,26 +51,49 @@ class Finder {
                           .rule = "is an input that changes at events alone, and an expression in the plant file",
                           .advice = "give it a channel of its own"});
     for (std::size_t k = 0; k < block_.states.size(); ++k) {
-      found_.states.push_back({block_.setup.states[k].reference, "kReal", block_.states[k]});
-      found_.rates.push_back({block_.setup.derivatives[k].reference, "kReal", {}});
+      found_.states.push_back(port_at(block_.setup.states, {k, block_.states[k]}));
+      found_.rates.push_back(port_at(block_.setup.derivatives, {k, {}}));
     }
-    for (const Port& port : block_.variables)
-      found_.variables.push_back({block_.setup.outputs[port.place].reference,
-                                  kind_of(at_reference(block_.setup.outputs[port.place].reference)), port.unit});
+    for (const Port& port : block_.variables) {
+      found_.variables.push_back(port_at(block_.setup.outputs, port));
+      found_.variables.back().kind = kind_of(at_reference(found_.variables.back().reference));
+    }
     for (std::size_t k = 0; k < outputs_; ++k) found_.shown.push_back(shown_by(frame_.outputs.values[k]));
     for (const Variable& variable : description_.variables) found_.own = std::max(found_.own, variable.reference + 1);
     return std::move(found_);
   }
 
  private:
+  /// Of an element among those of whole variables.
+  static WrapperPort port_at(const std::vector<Handle>& handles, const Port& port) {
+    std::size_t place = port.place, handle = 0;
+    while (place >= handles[handle].size) place -= handles[handle++].size;
+    return {.reference = handles[handle].reference,
+            .unit = port.unit,
+            .element = static_cast<std::uint32_t>(place),
+            .size = handles[handle].size};
+  }
+
+  // An array is one variable, which brings values of the plant with all of its elements that are driven, or with none.
+  static void keep_arrays_whole(std::vector<DrivenVariable>& driven) {
+    const auto is_kept = [&](const DrivenVariable& one) {
+      return one.alone && std::ranges::count(driven, one.alone, &DrivenVariable::alone) == 1;
+    };
+    std::vector<std::size_t> broken;
+    for (const DrivenVariable& one : driven)
+      if (one.port.size > 1 && !is_kept(one)) broken.push_back(one.variable);
+    for (DrivenVariable& one : driven)
+      if (std::ranges::find(broken, one.variable) != broken.end()) one.alone.reset();
+  }
+
   DrivenVariable driven(const std::vector<Handle>& handles, const Port& port, FmiCausality causality, std::size_t row) {
     DrivenVariable result{
         .variable = 0, .node = frame_.outputs.values[row], .alone = {}, .with_laws = false, .port = {}};
-    const std::uint32_t reference = handles[port.place].reference;
-    while (description_.variables[result.variable].reference != reference ||
+    result.port = port_at(handles, port);
+    while (description_.variables[result.variable].reference != result.port.reference ||
            description_.variables[result.variable].causality != causality)
       ++result.variable;
-    result.port = {reference, kind_of(description_.variables[result.variable]), port.unit};
+    result.port.kind = kind_of(description_.variables[result.variable]);
     const Node plain = without_added(expressions_, result.node, frame_.places);
     result.with_laws = plain != result.node;
     const Expressions::Entry& entry = expressions_.entries()[plain];
@@ -91,10 +115,10 @@ class Finder {
     const std::size_t states = block_.states.size();
     std::optional<std::uint32_t> reference;
     if (entry.a >= frame_.places.states && entry.a < frame_.places.states + states)
-      reference = block_.setup.states[entry.a - frame_.places.states].reference;
+      reference = port_at(block_.setup.states, {entry.a - frame_.places.states, {}}).reference;
     if (entry.a >= frame_.places.added + states && entry.a < frame_.places.added + states + block_.variables.size())
-      reference = block_.setup.outputs[block_.variables[entry.a - frame_.places.added - states].place].reference;
-    if (!reference) return std::nullopt;
+      reference = port_at(block_.setup.outputs, block_.variables[entry.a - frame_.places.added - states]).reference;
+    if (!reference || at_reference(*reference).size != 1) return std::nullopt;
     return static_cast<std::size_t>(&at_reference(*reference) - description_.variables.data());
   }
 

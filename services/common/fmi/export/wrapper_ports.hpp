@@ -15,6 +15,7 @@ struct WrapperPort {
   std::uint32_t reference = 0;
   const char* kind = "kReal";
   Conversion unit;
+  std::uint32_t element = 0, size = 1;  ///< of an array
 };
 
 /// The kind of a variable's port, as fmi2_wrapper.c names it.

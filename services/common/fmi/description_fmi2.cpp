@@ -32,6 +32,7 @@ Variable read_variable(const DescriptionReader& reader, const pugi::xml_node& no
                     .max = {},
                     .nominal = {},
                     .derivative_of = {}};
+  variable.begins = reader.text(node.child("Annotations").find_child_by_attribute("Tool", "name", kBegins), "start");
   for (const Kind& kind : kKinds) {
     const pugi::xml_node content = node.child(kind.element);
     if (!content) continue;

@@ -73,6 +73,7 @@ Variable read_variable(const DescriptionReader& reader, const pugi::xml_node& no
                     .max = {},
                     .nominal = {},
                     .derivative_of = {}};
+  variable.begins = node.child("Annotations").find_child_by_attribute("Annotation", "type", kBegins).text().get();
   read_number_attributes(reader, node, types, variable);
   return variable;
 }

@@ -246,10 +246,16 @@ class PlantFileWriter {
       out_ << "  " << row.name << ": {variable: " << text::quoted(fmu_.name_of(row.element))
            << ", unit: " << text::quoted(row.unit)
            << ", start: " << (start_.linked[k] ? kStartOfFmu : start_of(row, start))
-           << ", size: " << number(usual ? nominal : 1.0)
-           << ", own: " << (!start_.linked[k] && shown_by_output(row) ? "true" : "false")
+           << ", size: " << number(usual ? nominal : 1.0) << ", " << course_of_start(k)
            << ", meaning: " << text::quoted(row.meaning) << "}" << unit_asked_for(row) << "\n";
     }
+  }
+
+  [[nodiscard]] std::string course_of_start(std::size_t state) const {
+    const std::string& begins = fmu_.variables[rows_.states[state].element.variable].begins;
+    if (begins == kSettles && !start_.linked[state]) return "settles: true";
+    const bool own = begins == kOwn || shown_by_output(rows_.states[state]);
+    return own && !start_.linked[state] ? "own: true" : "own: false";
   }
 
   // Many binaries answer 1, as if nothing were known, whatever their description says.

@@ -72,6 +72,7 @@ struct Variable {
   std::vector<double> start;              ///< of numbers: empty, or one for each element
   std::optional<double> min, max, nominal;
   std::vector<Item> items = {};
+  std::string begins = {};                   ///< of a state that sealwatch has exported: kSettles, kOwn
   std::optional<std::size_t> derivative_of;  ///< index of the variable that it is the time derivative of
 };
 
@@ -85,6 +86,11 @@ struct Interface {
   bool variable_steps = false;        ///< of Co-Simulation: the steps from sample to sample may differ
   double fixed_step_s = 0.0;          ///< of which a Co-Simulation unit does whole numbers alone; 0: of any
 };
+
+/// How a state begins that sealwatch exports: FMI has no word for it.
+inline constexpr const char* kSettles = "settles";             ///< where it rests, its neighbours being held
+inline constexpr const char* kOwn = "own";                     ///< each recording has a start of its own
+inline constexpr const char* kBegins = "org.sealwatch.start";  ///< what such an annotation is called
 
 /// An element of a variable.
 struct Element {

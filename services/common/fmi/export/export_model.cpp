@@ -12,6 +12,7 @@
 #include "services/common/fmi/export/law_formulas.hpp"
 #include "services/common/fmi/export/laws_function.hpp"
 #include "services/common/fmi/export/shell_text.hpp"
+#include "services/common/fmi/export/wrapper_description.hpp"
 #include "services/common/model/physics_terms.hpp"
 
 namespace sealwatch::fmi {
@@ -23,7 +24,8 @@ using equations::Node;
 struct Row {
   std::string name, unit, meaning;
   double start = 0.0;
-  double nominal = 0.0;  ///< 0: not said
+  double nominal = 0.0;     ///< 0: not said
+  const char* begins = "";  ///< of a state: kSettles, kOwn
 };
 
 std::string escaped(const std::string& text) {
@@ -92,12 +94,16 @@ class Exporter {
     if (!start) return fail(start.error());
     for (std::size_t k = 0; k < plant.states.size(); ++k)
       states_.push_back({plant.states[k].name, plant.states[k].unit, plant.states[k].meaning, (*start)[k],
-                         plant_.states[k].scale / equations::kErrorOfSize});
+                         plant_.states[k].scale / equations::kErrorOfSize,
+                         plant_.states[k].settles ? kSettles
+                         : plant_.states[k].slow  ? kOwn
+                                                  : ""});
     for (const ActiveTerm& term : terms_.active)  // in the order of their hidden states
       if (term.hidden >= 0)
         states_.push_back({terms_.hidden_names[static_cast<std::size_t>(term.hidden)],
                            std::string(term.law->hidden->unit), "hidden state of a law", 0.0,
-                           terms_.hidden_scales[static_cast<std::size_t>(term.hidden)]});
+                           terms_.hidden_scales[static_cast<std::size_t>(term.hidden)],
+                           beginning_of(*term.law->hidden)});
     for (const PhysicsParameter& row : terms_.parameters)
       parameters_.push_back(
           {row.name, std::string(row.parameter->unit), std::string(row.parameter->meaning), row.setting.value});
@@ -243,7 +249,11 @@ static void model_outputs(double t, const double* x, const double* u, const doub
           << escaped(list[k].unit) << "\"";
       if (list[k].nominal > 0.0) out << " nominal=\"" << c_number(list[k].nominal) << "\"";
       if (with_start) out << " start=\"" << c_number(list[k].start) << "\"";
-      out << "/>\n";
+      if (*list[k].begins == '\0')
+        out << "/>\n";
+      else
+        out << "><Annotations><Annotation type=\"" << kBegins << "\">" << list[k].begins
+            << "</Annotation></Annotations></Float64>\n";
     }
   }
 
@@ -275,7 +285,10 @@ static void model_outputs(double t, const double* x, const double* u, const doub
           << attributes << "><Real unit=\"" << escaped(list[k].unit) << "\"";
       if (list[k].nominal > 0.0) out << " nominal=\"" << c_number(list[k].nominal) << "\"";
       if (with_start) out << " start=\"" << c_number(list[k].start) << "\"";
-      out << "/></ScalarVariable>\n";
+      out << "/>";
+      if (*list[k].begins != '\0')
+        out << "<Annotations><Tool name=\"" << kBegins << "\" start=\"" << list[k].begins << "\"/></Annotations>";
+      out << "</ScalarVariable>\n";
     }
   }
 

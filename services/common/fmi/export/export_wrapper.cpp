@@ -119,9 +119,13 @@ class WrapperExporter {
         add(description_.hidden, {.name = terms_.hidden_names[static_cast<std::size_t>(term.hidden)],
                                   .unit = std::string(term.law->hidden->unit),
                                   .meaning = "hidden state of a law",
-                                  .nominal = terms_.hidden_scales[static_cast<std::size_t>(term.hidden)]});
+                                  .nominal = terms_.hidden_scales[static_cast<std::size_t>(term.hidden)],
+                                  .begins = beginning_of(*term.law->hidden)});
     for (const OwnVariable& hidden : std::vector(description_.hidden))
       add(description_.hidden_rates, {"der(" + hidden.name + ")", "", "rate of a law's hidden state"});
+    const std::vector<Element>& states = block_.file->description().states;
+    for (std::size_t k = 0; k < states.size(); ++k)
+      if (plant_.states[k].settles) add_once(description_.settling, states[k].variable);
     collect_channels(next);
     collect_parameters(next);
     for (std::size_t k = 0; k < ports_.shown.size(); ++k) {

@@ -129,6 +129,7 @@ class Rewriter {
       else
         set_start(start.variable, c_number(start.value));
     }
+    for (const std::size_t place : own_.settling) annotate(place, kSettles);
     for (const std::size_t place : own_.local_inputs) {
       set(variables_[place], "causality", "local");
       typed(place).remove_attribute("start");
@@ -143,6 +144,18 @@ class Rewriter {
           static_cast<std::size_t>(inner_.description().find(name) - inner_.description().variables.data());
       set_start(place, text);
     }
+  }
+
+  // FMI 2.0 has annotations behind the type, FMI 3.0 before all else.
+  void annotate(std::size_t place, const char* begins) {
+    xml_node variable = variables_[place], notes = variable.child("Annotations");
+    if (!notes) notes = third_ ? variable.prepend_child("Annotations") : variable.append_child("Annotations");
+    xml_node note = notes.append_child(third_ ? "Annotation" : "Tool");
+    note.append_attribute(third_ ? "type" : "name").set_value(kBegins);
+    if (third_)
+      note.text().set(begins);
+    else
+      note.append_attribute("start").set_value(begins);
   }
 
   // FMI 3.0: a name is one variable's, an alias's too.
@@ -169,6 +182,7 @@ class Rewriter {
     if (row.nominal > 0.0) real.append_attribute("nominal").set_value(c_number(row.nominal).c_str());
     if (with_start) real.append_attribute("start").set_value(c_number(row.start).c_str());
     variables_.push_back(variable);
+    if (*row.begins != '\0') annotate(variables_.size() - 1, row.begins);
     return variables_.size();
   }
 

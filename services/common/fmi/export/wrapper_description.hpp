@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "sealwatch/model/physics.hpp"
 #include "services/common/fmi/fmu_file.hpp"
 
 namespace sealwatch::fmi {
@@ -16,7 +17,13 @@ struct OwnVariable {
   std::uint32_t reference = 0;
   double nominal = 0.0;      ///< 0: not said
   bool takes_alias = false;  ///< it is what an alias of its name stands for in the FMU
+  const char* begins = "";   ///< of a state: kSettles, kOwn
 };
+
+/// How the hidden state of a law begins.
+[[nodiscard]] inline const char* beginning_of(const HiddenState& hidden) {
+  return hidden.settled ? kSettles : hidden.free_initial ? kOwn : "";
+}
 
 /// Of an element of a variable of the FMU, by its place in the description.
 struct ChangedStart {
@@ -28,6 +35,7 @@ struct WrapperVariables {
   std::string token, identifier;
   std::vector<OwnVariable> hidden, hidden_rates, inputs, parameters, outputs;
   std::vector<ChangedStart> starts;                   ///< of the FMU's parameters
+  std::vector<std::size_t> settling;                  ///< states of the FMU, by place in its description
   std::vector<std::size_t> local_inputs, calculated;  ///< of the FMU: inputs and parameters that follow from others
 };
 

@@ -90,7 +90,8 @@ TEST(ImportedFmu, OneAsAVendorsToolExportsItIsSimulated) {
   const auto expected =
       simulated(imported(plain, spring_return("fmu_spring_return2"), "of_no_vendor"), 1.0, "position");
   ASSERT_TRUE(expected) << expected.error().describe();
-  EXPECT_LT((said->values - expected->values).cwiseAbs().maxCoeff(), 1e-9);
+  // Its nominal value is a size, so that it is integrated more exactly.
+  EXPECT_LT((said->values - expected->values).cwiseAbs().maxCoeff(), 1e-7);
 }
 
 TEST(ImportedFmu, OneOfThousandsOfOutputsIsAPlantFileToo) {

@@ -39,6 +39,7 @@ struct FitOptions {
   std::vector<std::string> recordings;
   std::string model;  ///< "" the best that the channels allow
   double time_limit_s = std::numeric_limits<double>::infinity();
+  int threads = 2;
   bool json = false;
 };
 int run_fit(const FitOptions& options);

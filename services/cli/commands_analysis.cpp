@@ -76,6 +76,9 @@ void add_fit(CommandLine& line) {
          "--time-limit", options->time_limit_s,
          "stop after this many seconds with the best answer so far, marked as not converged (default: no limit)")
       ->check(CLI::PositiveNumber);
+  fit->add_option("--threads", options->threads, "recordings that are simulated at once")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
   fit->add_flag("--json", options->json, "machine-readable result (schema sealwatch.fit/1)");
 }
 

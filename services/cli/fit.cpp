@@ -43,11 +43,13 @@ bool inputs_recorded(const PlantDescription& plant, const std::vector<Recording>
   });
 }
 
-FitResult fit_whole(const AssetConfig& asset, const std::vector<Recording>& recordings, const Deadline& deadline) {
+FitResult fit_whole(const AssetConfig& asset, const std::vector<Recording>& recordings, int threads,
+                    const Deadline& deadline) {
   std::vector<TimeSeries> samples;
   samples.reserve(recordings.size());
   for (const Recording& recording : recordings) samples.push_back(recording.samples);
   ActuatorFitOptions search = search_of(asset);
+  search.threads = threads;
   search.deadline = &deadline;
   Progress progress("fit", 100);
   static constexpr std::chrono::seconds kLong{5};  // one that takes less is told by its result alone
@@ -188,7 +190,7 @@ std::optional<FitResult> fit_as_asked(const FitOptions& options, const AssetConf
   }
   const bool cylinder = options.model.empty() ? has_cylinder_circuit(asset) && !inputs_recorded(plant, recordings)
                                               : options.model == kCylinderCircuit;
-  if (!cylinder) return fit_whole(asset, recordings, deadline);
+  if (!cylinder) return fit_whole(asset, recordings, options.threads, deadline);
   std::vector<FitReport> fits;
   fits.reserve(recordings.size());
   for (const Recording& recording : recordings) fits.push_back(fit_cylinder(asset, recording));

@@ -87,6 +87,7 @@ TEST_F(OwnPlantCommands, TestsOfOneLogAreCountedAndNamed) {
   EXPECT_THAT(fit.output, HasSubstr("2 recordings: "));
   EXPECT_THAT(fit.output, HasSubstr("log.csv#2"));
   const Finished as_json = run({"sealwatch", "fit", "--asset", asset_file, log, "--json"});
+  EXPECT_EQ(run({"sealwatch", "fit", "--asset", asset_file, log, "--json", "--threads", "1"}).output, as_json.output);
   EXPECT_EQ(json::parse(as_json.output)["recordings"], json({log + "#1", log + "#2"})) << as_json.output;
   const Finished validated = run({"sealwatch", "validate", "--asset", asset_file, log, "--out", path("validated")});
   EXPECT_THAT(validated.output, HasSubstr("log.csv#2"));

@@ -94,6 +94,15 @@ TEST(DerivedOutputs, AnAccelerometerThatMissesALawIsNamedWithWhatToDo) {
                                 HasSubstr("take the output out of the channels"))));
 }
 
+// explain and fit, which load the plant, tell it from there.
+TEST(DerivedOutputs, ThePlantThatIsLoadedKeepsTheRemark) {
+  const TestFolder folder;
+  const std::string output = "  accelerometer: {value: \"9.81[m/s2]*felt\", unit: m/s2, noise_std: 1.0e-3}\n";
+  const auto plant = load_plant(unit_file(folder, "felt_and_loaded", output));
+  ASSERT_TRUE(plant) << plant.error().front().describe();
+  EXPECT_THAT((*plant)->remarks, ElementsAre(HasSubstr("computes felt from the derivative of v")));
+}
+
 // Forces that make up the balance, and what is integrated of it, are reached by way of the states.
 TEST(DerivedOutputs, WhatIsMovedByStatesAloneIsNoneOfThem) {
   const TestFolder folder;

@@ -118,6 +118,13 @@ class RecordingRun {
 
   [[nodiscard]] tl::unexpected<Error> failure(double time) const {
     if (passed(deadline_)) return fail("the simulation was ended: its time was up");
+    if (at_once_ > kMostAtOnce)
+      return fail(Error{.file = {},
+                        .place = "t = " + text::general(time) + " s",
+                        .value = system_.trouble(),
+                        .rule = "events follow each other without end: something in the model switches to and fro, as "
+                                "dry friction where it sticks",
+                        .advice = "give what switches a hysteresis, or round it (tanh for the sign of a speed)"});
     if (integrator_.statistics().steps >= most_steps_)
       return fail(Error{
           .file = {},
@@ -281,8 +288,7 @@ class RecordingRun {
   [[nodiscard]] bool pass_event(double time) {
     event_s_ = kNoEvent;
     if (has_events()) {
-      constexpr int kMostAtOnce = 1000;
-      at_once_ = time - last_event_s_ < 1e-9 ? at_once_ + 1 : 0;
+      at_once_ = time - last_event_s_ < at_once_s() ? at_once_ + 1 : 0;
       last_event_s_ = time;
       if (at_once_ > kMostAtOnce) return false;
       std::vector<double> state(static_cast<std::size_t>(integrator_.states()));
@@ -294,6 +300,14 @@ class RecordingRun {
       for (std::size_t k = 0; k < state.size(); ++k) point_[k * integrator_.stride()] = state[k];
     }
     return integrator_.states() == 0 || integrator_.start(time, point_.data());
+  }
+
+  // Events that follow each other so soon, again and again, end nowhere: what sticks is switched to and fro.
+  [[nodiscard]] double at_once_s() const {
+    constexpr double kShareOfDistance = 1e-5;
+    const std::vector<double>& times = input_.times();
+    const double distance_s = (times.back() - times.front()) / static_cast<double>(times.size());
+    return std::max(1e-9, kShareOfDistance * distance_s);
   }
 
   void pass_sensors(double time, const double* point) {
@@ -345,6 +359,7 @@ class RecordingRun {
   static constexpr double kNoEvent = std::numeric_limits<double>::infinity();
   double event_s_ = kNoEvent;  ///< that lies within the last step and is not passed yet
   double last_event_s_ = -kNoEvent;
+  static constexpr int kMostAtOnce = 1000;
   int at_once_ = 0;
   bool stopped_by_event_ = false;
   unsigned asked_ = 0;  ///< for the time

@@ -1,6 +1,7 @@
 // Events in a simulation: a ball that bounces and is thrown, against its parabolas in closed form; Co-Simulation units.
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <regex>
@@ -110,6 +111,26 @@ std::vector<double> heights_from(const TestFolder& folder, const std::string& na
   std::vector<double> heights;
   for (int row = 0; row <= 200 && outputs; ++row) heights.push_back(outputs->values(row, 0));
   return heights;
+}
+
+// Dry friction that switches with the sign of the speed takes ever shorter steps where it sticks.
+TEST(FmuEvents, ASwitchThatChattersIsNamedSoon) {
+  const TestFolder folder;
+  TestUnit unit = bouncing("fmu_bouncing2");
+  unit.binary = "fmu_relay2";
+  static_cast<void>(folder.build(unit));
+  const auto plant = load_plant(ball_file(folder, "chattering"));
+  ASSERT_TRUE(plant) << plant.error().front().describe();
+  const auto simulation = PlantSimulation::create(nominal_asset("chattering"), watched());
+  ASSERT_TRUE(simulation) << simulation.error().describe();
+  ModelValues values = (*simulation)->start();
+  values.initial_state[0] = 0.02;
+  const auto begin = std::chrono::steady_clock::now();
+  const auto outputs = (*simulation)->run(values, {}, {.maximum_steps = 5'000'000});
+  ASSERT_FALSE(outputs);
+  EXPECT_THAT(outputs.error().describe(), testing::AllOf(testing::HasSubstr("events follow each other without end"),
+                                                         testing::HasSubstr("a hysteresis, or round it")));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
 }
 
 TEST(FmuEvents, AStateEventAtTheVeryBeginningIsPassed) {

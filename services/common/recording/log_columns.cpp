@@ -208,7 +208,8 @@ std::string_view unit_behind_a_slash(std::string_view text, const std::string& s
   return {};
 }
 
-/// "V" of "Drive (V) (raw)" and "Drive[V]{1}": the last in brackets; "ms" of "Zeit (ms seit Start)", where words follow.
+/// "V" of "Drive (V) (raw)" and "Drive[V]{1}": the last in brackets; "ms" of "Zeit (ms seit Start)", where words
+/// follow.
 std::string_view unit_in_brackets(std::string_view text, const std::string& si_unit) {
   for (std::size_t open = text.find_last_of("[("); open != std::string_view::npos && open > 0;
        open = text.find_last_of("[(", open - 1)) {

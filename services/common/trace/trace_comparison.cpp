@@ -302,8 +302,8 @@ class Comparison {
     return out;
   }
 
-  /// A few waves are what noise of some colour may be, too, of which no regressor tells; with the other sign, or another
-  /// clock, there is none of it left. How much less likely such noise is, 1 where it is not by far.
+  /// A few waves are what noise of some colour may be, too, of which no regressor tells; with the other sign, or
+  /// another clock, there is none of it left. How much less likely such noise is, 1 where it is not by far.
   [[nodiscard]] double odds_of_waves(const Pair& pair) const {
     constexpr double kFarWiderSearched = 30.0;  // of -2 log L: what is free is looked for over a whole range
     constexpr double kMost = 0.5;               // of the misfit

@@ -36,7 +36,7 @@ void Analysis::ask_values_in_place_of_own() {
 void Analysis::ask_the_datasheet() {
   const std::size_t laws = best_.effects.size();
   const bool asks = laws > 0 || (result_.statistically_significant && excess(*baseline_) <= kGross);
-  if (!asks || (windowed() && !by_measurements(asset_, fit_))) return;
+  if (!asks) return;
   tell("asking the values that the asset file fixes", 0.7);
   const Data data = prepared(fit_);
   const DatasheetQuestion question{asset_, *baseline_, best_, data, options_.threads};

@@ -16,7 +16,12 @@
 namespace sealwatch {
 namespace {
 
-std::string cart(const std::string& name, const std::string& spring, const std::string& newton) {
+struct CartFile {
+  std::string force_constant = "12, unit: N/A, tolerance: 0.02";
+  double window_s = 0.0;
+};
+
+std::string cart(const std::string& name, const std::string& spring, const std::string& newton, const CartFile& file) {
   return "name: " + name +
          "\n"
          "meaning: cart on a spring that a voice coil pushes\n"
@@ -30,7 +35,9 @@ std::string cart(const std::string& name, const std::string& spring, const std::
          spring +
          ", unit: N/m, estimate: true, meaning: spring}\n"
          "  c: {value: 4, min: 0.01, max: 100, unit: N s/m, estimate: true, meaning: damping}\n"
-         "  K: {value: 12, unit: N/A, tolerance: 0.02, meaning: force constant}\n"
+         "  K: {value: " +
+         file.force_constant +
+         ", meaning: force constant}\n"
          "states:\n"
          "  x: {der: v, unit: m, start: position}\n"
          "  v: {der: (K*current - c*v - k*x - F)/m, unit: m/s, start: rate(position), size: 0.1}\n"
@@ -40,14 +47,15 @@ std::string cart(const std::string& name, const std::string& spring, const std::
          "    sites:\n"
          "      - {kind: piston_force, symbol: F, signals: {speed: v, position: x}}\n"
          "law_sizes: {N: " +
-         newton + ", m: 0.01, m/s: 0.2, N s/m: 0.5, N s2/m2: 5.0, N/m: 100, s: 1}\n";
+         newton + ", m: 0.01, m/s: 0.2, N s/m: 0.5, N s2/m2: 5.0, N/m: 100, s: 1}\n" +
+         (file.window_s > 0.0 ? "window_s: " + std::to_string(file.window_s) + "\n" : "");
 }
 
 // `spring`, `newton`: what the plant's file says of them.
 mismatch::Explanation explained(const std::string& name, const std::string& spring, const std::string& newton,
-                                const CartTruth& truth) {
+                                const CartTruth& truth, const CartFile& plant_file = {}) {
   const std::string file = ::testing::TempDir() + name + ".yaml";
-  std::ofstream(file) << cart(name, spring, newton);
+  std::ofstream(file) << cart(name, spring, newton, plant_file);
   const auto plant = load_plant(file);
   if (!plant) throw std::runtime_error(combine(plant.error()).describe());
   const std::vector<Recording> fit = {recorded_cart("first", truth, 1), recorded_cart("second", truth, 2),
@@ -86,6 +94,17 @@ TEST(FarOffValues, AFitGoesBeyondARangeThatNobodyGave) {
   EXPECT_EQ(found.verdict, MismatchVerdict::consistent) << found.summary;
   const auto tells = [](const std::string& note) { return note.starts_with("No range is given for k"); };
   EXPECT_TRUE(std::ranges::any_of(found.notes, tells));
+}
+
+/// The gain of the current and a force constant 6 % off do the same: as in a free run, neither is claimed.
+TEST(FarOffValues, InWindowsAWrongValueIsNamedBesideAGainThatDoesTheSame) {
+  const mismatch::Explanation found = explained(
+      "windows", "value: 1000", "0.003", {}, {.force_constant = "11.3, unit: N/A, tolerance: 0.005", .window_s = 1.0});
+  EXPECT_EQ(found.verdict, MismatchVerdict::undetermined) << found.summary;
+  EXPECT_TRUE(found.effects.empty()) << found.summary;
+  ASSERT_FALSE(found.asset_values.empty()) << found.summary;
+  EXPECT_EQ(found.asset_values.front().front().name, "K");
+  EXPECT_NEAR(found.asset_values.front().front().fitted, 12.1, 0.1);
 }
 
 TEST(FarOffValues, PhysicsIsFoundBesideThem) {

@@ -76,7 +76,7 @@ Status Analysis::look_from(std::optional<Trial> from) {
   ExplainOptions options = options_;
   if (driven_unseen()) options.maximum_laws = 0;
   if (!windowed()) fit_.may_differ = may_differ(asset_, fit_);
-  if (!windowed()) fit_.fixed = known_values(asset_, plant());
+  fit_.fixed = known_values(asset_, plant());
   const ScreeningOptions screening{.seed = options.seed, .threads = options.threads};
   Result<Screening> first = screen(*baseline_, prepared(fit_), screening);
   if (!first) return fail(first.error());
@@ -170,7 +170,19 @@ std::vector<Trial> Analysis::laws_that_may_end_it(const Screening& first) const 
   std::vector<std::vector<LawStart>> starts;
   for (LawStart& start : ranked_laws(first, kAsked)) starts.push_back({std::move(start)});
   if (starts.empty() || baseline_->misfit - by_gain(first).front()->gain > kLeft * baseline_->misfit) return {};
-  return refit({{}, baseline_}, starts, prepared(fit_), options_.threads);
+  const Data data = prepared(fit_);
+  const Trial nothing{{}, baseline_};
+  std::vector<Trial> trials = refit(nothing, starts, data, options_.threads);
+  // One that explains nearly all may be the right one beside parameters that had bent to it before.
+  if (trials.empty() || excess(*trials.front().model) <= kGross ||
+      trials.front().model->misfit > kLeft * baseline_->misfit)
+    return trials;
+  const auto given = with_given_values(nothing, data);
+  if (!given) return trials;
+  const RefitOptions nearer{.to_beat = trials.front().model->misfit};
+  for (Trial& trial : refit(*given, {{last_law_of(trials.front())}}, data, options_.threads, nearer))
+    if (trial.model->misfit < trials.front().model->misfit) trials.front() = std::move(trial);
+  return trials;
 }
 
 Result<Screening> Analysis::look_with_inexact_sensors(const std::vector<KnownValue>& known,

@@ -16,7 +16,7 @@ ActuatorFitOptions search_options(int threads, int iterations) {
   ActuatorFitOptions options;
   options.maximum_iterations = iterations;
   options.hopeless_rms = 1e9;  // a bad fit is what is looked at here
-  options.restart_factors = {0.5, 2.0, 0.25};
+  options.restart_factors = {};
   options.threads = threads;
   return options;
 }

@@ -373,19 +373,6 @@ class DifferingTests {
   std::vector<Trial> trials_;
 };
 
-// The laws found so far with the plant's parameters where the asset file has them. In a gross misfit parameters bend to
-// what is missing: their fit has several minima, from some of which no search finds the law.
-std::optional<Trial> with_given_values(const Trial& found, const Data& data) {
-  AssetConfig asset = found.model->asset;
-  for (const auto& [name, value] : data.given)
-    if (const auto parameter = asset.parameters.find(name); parameter != asset.parameters.end())
-      parameter->second.value = value;
-  const FittedModel nowhere;
-  Result<FittedModel> model = fit_model(asset, data, &nowhere, 1, 0);
-  if (!model) return std::nullopt;
-  return Trial{found.effects, std::make_shared<const FittedModel>(std::move(*model))};
-}
-
 // Of these trials the causes; all, where none of them is worth another law.
 std::vector<Trial> causes_if_any(const std::vector<Trial>& trials, const Trial& from, double phi) {
   std::vector<Trial> causes = causes_among(trials, from);

@@ -300,6 +300,25 @@ class Refits {
 
 }  // namespace
 
+LawStart last_law_of(const Trial& trial) {
+  LawStart start{.effect = trial.effects.back(), .parameters = {}};
+  const std::map<std::string, ParameterSetting>& found = trial.model->asset.physics.back().parameters;
+  for (const LawParameter& parameter : start.effect.law->parameters)
+    start.parameters.push_back(found.at(std::string(parameter.name)).value);
+  return start;
+}
+
+std::optional<Trial> with_given_values(const Trial& found, const Data& data) {
+  AssetConfig asset = found.model->asset;
+  for (const auto& [name, value] : data.given)
+    if (const auto parameter = asset.parameters.find(name); parameter != asset.parameters.end())
+      parameter->second.value = value;
+  const FittedModel nowhere;
+  Result<FittedModel> model = fit_model(asset, data, &nowhere, 1, 0);
+  if (!model) return std::nullopt;
+  return Trial{found.effects, std::make_shared<const FittedModel>(std::move(*model))};
+}
+
 AsKnown as_known(const AssetConfig& asset, const Data& data) {
   AsKnown plain{asset, data};
   for (const KnownValue& value : known_parameters(data, asset)) {

@@ -36,6 +36,14 @@ struct LawStart {
   double asked_at = 0.0;
 };
 
+/// The law that was added last, with the values that it was found with.
+[[nodiscard]] LawStart last_law_of(const Trial& trial);
+
+/// The laws found so far with the plant's parameters where the asset file has them; nothing where that cannot be
+/// simulated. In a gross misfit parameters bend to what is missing: their fit has several minima, from some of which no
+/// search finds the law.
+[[nodiscard]] std::optional<Trial> with_given_values(const Trial& found, const Data& data);
+
 /// Where values of the asset file that are known within a tolerance are as the file gives them, and stay that.
 struct AsKnown {
   AssetConfig asset;

@@ -86,13 +86,19 @@ def from_another(campaign, file):
     shutil.copy(file.parent / database(campaign.random.choice([s for s in SERVICES if database(s) != file.name])), file)
 
 
+def remove_all_of(_, file):
+    """As of a service that never ran, with its locks and marks: its neighbours alone remember it."""
+    for one in file.parent.glob(file.stem + ".*"):
+        one.unlink()
+
+
 def copy_over(source, file):
     shutil.copy(source / file.name, file)
 
 
 # What is done to a journal that its service has closed, or left when it was killed.
 CLOSED = {"zeroed page": zero_page, "cut": lambda c, file: os.truncate(file, int(file.stat().st_size * c.random.uniform(0.2, 0.9))),
-          "removed": lambda c, file: file.unlink(), "emptied": lambda c, file: os.truncate(file, 0),
+          "removed": lambda c, file: file.unlink(), "removed with all beside it": remove_all_of, "emptied": lambda c, file: os.truncate(file, 0),
           "another service's": from_another, "another site's": lambda c, file: copy_over(c.other_site, file),
           "older backup": lambda c, file: copy_over(c.older, file)}
 KILLED = {"log removed": lambda c, file: log_of(file).unlink(), "log's end spoilt": lambda c, file: garbage_in(log_of(file), 0.6)}

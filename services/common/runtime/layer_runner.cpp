@@ -59,12 +59,15 @@ Status LayerRunner::start() {
   if (Status status = bus_.announce(outputs_); !status) return status;
   const auto positions = journal_.positions();
   if (!positions) return fail(positions.error());
+  std::vector<StreamPosition> streams;
   for (const StreamPosition& known : *positions) {
+    if (restore_name(known)) continue;
+    streams.push_back(known);
     committed_[{known.topic, known.writer_id}] = known.sequence;
     kept_streams_.insert({known.topic, known.writer_id});
     strangers_.expect(known.writer_id);
   }
-  reader_ = std::make_unique<StreamReader>(journal_.writer_id(), *positions, options_.streams);
+  reader_ = std::make_unique<StreamReader>(journal_.writer_id(), streams, options_.streams);
   // Nothing is missing yet; from now on it knows the time, by which it forgets whom it does not hear.
   (void)reader_->requests(std::chrono::duration<double>(steady_clock::now().time_since_epoch()).count());
 
@@ -568,6 +571,7 @@ std::vector<StreamPosition> LayerRunner::received() const {
     if (is_of_a_service(stream.first) && std::ranges::find(active, stream) == active.end())
       received.push_back({stream.first, stream.second, position});
   }
+  for (const auto& [topic, name] : first_names_) received.push_back({topic, name, 1});
   return received;
 }
 

@@ -329,6 +329,10 @@ class LayerRunner {
   /// What another service tells of its record of acts.
   void hear_of_acts(const ServiceStatus& status);
   void keep_anchor(const AuditAnchor& heard);
+  /// The name of another service that has a history: who loses it with its journal hears it here.
+  void keep_name(const ServiceStatus& status);
+  /// Whether the position in the journal is such a name.
+  [[nodiscard]] bool restore_name(const StreamPosition& known);
   void note_older_acts(const ServiceStatus& status);
   [[nodiscard]] std::optional<std::string> lost_for_ever() const;
   void hear_of_own_outputs(const ServiceStatus& status);
@@ -411,18 +415,20 @@ class LayerRunner {
   std::vector<Message> records_;                                      ///< of the running batch: own act_records
   bool waits_for_acts_ = false;  ///< the journal is new, and acts come before all else
   std::deque<std::pair<Message, std::chrono::steady_clock::time_point>> told_records_;  ///< not yet in line, since when
-  std::vector<Message> said_meanwhile_;            ///< by people, to this service itself
-  std::map<std::string, std::string> standing_;    ///< advisory_id of the advice that stands, by asset
-  AuditAnchor last_act_;                           ///< of the own record
-  std::map<std::string, AuditAnchor> heard_acts_;  ///< the last of each other service, as kept
-  std::vector<AuditAnchor> new_anchors_;           ///< not yet kept
-  bool is_new_ = false;                            ///< the journal, and not yet compared with others' records
-  std::set<std::string> first_heard_;              ///< services that were heard since the start
-  std::set<std::string> compared_;                 ///< whose records the journal was compared with before
-  std::string has_older_acts_;                     ///< of them, one whose record began before the own journal
-  std::string has_unrecorded_acts_;                ///< likewise, and of an earlier version that keeps no act_record
-  std::string has_read_more_;                      ///< one that read messages of a journal before the own one
-  std::optional<std::string> set_back_before_;     ///< one that read more than the own journal has written
+  std::vector<Message> said_meanwhile_;             ///< by people, to this service itself
+  std::map<std::string, std::string> standing_;     ///< advisory_id of the advice that stands, by asset
+  AuditAnchor last_act_;                            ///< of the own record
+  std::map<std::string, AuditAnchor> heard_acts_;   ///< the last of each other service, as kept
+  std::vector<AuditAnchor> new_anchors_;            ///< not yet kept
+  bool is_new_ = false;                             ///< the journal, and not yet compared with others' records
+  std::set<std::string> first_heard_;               ///< services that were heard since the start
+  std::set<std::string> compared_;                  ///< whose records the journal was compared with before
+  std::string has_older_acts_;                      ///< of them, one whose record began before the own journal
+  std::string has_unrecorded_acts_;                 ///< likewise, and of an earlier version that keeps no act_record
+  std::string has_read_more_;                       ///< one that knows of a journal before the own one
+  std::map<std::string, std::string> first_names_;  ///< of others that had written something, by topic_of_name
+  std::set<std::string> new_names_;                 ///< of those, the topics that are not yet kept
+  std::optional<std::string> set_back_before_;      ///< one that read more than the own journal has written
   bool tells_of_set_back_ = false;
   std::set<std::string> has_read_own_;  ///< services that have said so since the start, and no more than was written
   std::vector<LaneResult> results_;     ///< not yet in the journal

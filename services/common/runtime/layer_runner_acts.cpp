@@ -40,6 +40,9 @@ std::string journal_lost(const std::string& other) {
          " knows of one before it, and is made again from the neighbours' messages" + kOrForged;
 }
 
+/// In a heartbeat and in the journal: StreamPosition of this topic, with the service's name in the place of the writer.
+std::string topic_of_name(std::string_view service) { return "service_status/" + std::string(service); }
+
 std::string journal_set_back(const std::string& other) {
   return "the journal is older than what " + other +
          " has read of it: a restored copy, or its end was cut off; what is missing is made again from the "
@@ -312,6 +315,22 @@ void LayerRunner::keep_anchor(const AuditAnchor& heard) {
   if (new_anchors_.size() < kMostNewAnchors) new_anchors_.push_back(heard);
 }
 
+/// The first name stays, whatever comes later: the service that compares it may go on under another one already.
+void LayerRunner::keep_name(const ServiceStatus& status) {
+  const auto& services = options_.strangers.services;
+  if (std::ranges::find(services, status.service) == services.end() || status.service == kind_->name()) return;
+  if (!strangers_.knows(status.writer_id)) return;
+  if (std::ranges::all_of(status.written, [](const StreamPosition& one) { return one.sequence == 0; })) return;
+  const std::string topic = topic_of_name(status.service);
+  if (first_names_.try_emplace(topic, status.writer_id).second) new_names_.insert(topic);
+}
+
+bool LayerRunner::restore_name(const StreamPosition& known) {
+  if (!known.topic.starts_with(topic_of_name({}))) return false;
+  first_names_[known.topic] = known.writer_id;
+  return true;
+}
+
 void LayerRunner::note_older_acts(const ServiceStatus& status) {
   has_older_acts_ = status.service;
   const bool are_kept =
@@ -323,11 +342,13 @@ bool LayerRunner::reads_samples() const {
   return std::ranges::find(kind_->inputs(), Topic::raw_samples) != kind_->inputs().end();
 }
 
-/// Others remember how far they read: further than this journal goes, or in one before it.
+/// Others remember who this service was, and how far they read: in a journal before this one, or further than it goes.
 void LayerRunner::hear_of_own_outputs(const ServiceStatus& status) {
   if (!strangers_.knows(status.writer_id)) return;
   bool is_reader = false, is_beyond = false;
   for (const StreamPosition& read : status.received) {
+    if (is_new_ && read.topic == topic_of_name(kind_->name()) && read.writer_id != journal_.writer_id())
+      has_read_more_ = status.service;
     const auto topic = value_of<Topic>(read.topic);
     if (!topic || read.sequence == 0) continue;
     const bool is_own_kind = std::ranges::find(kind_->outputs(), *topic) != kind_->outputs().end();
@@ -374,10 +395,10 @@ bool LayerRunner::all_heard() const {
 /// What a new journal lacks that its neighbours have no record of; nothing where all of it can be had back.
 std::optional<std::string> LayerRunner::lost_for_ever() const {
   std::vector<std::string> lost;
-  const std::string& knows_of_tests = has_read_more_.empty() ? has_older_acts_ : has_read_more_;
-  if (reads_samples() && !knows_of_tests.empty()) lost.push_back(samples_of_earlier_tests(knows_of_tests));
+  const std::string& knows_of_it = has_read_more_.empty() ? has_older_acts_ : has_read_more_;
+  if (reads_samples() && !knows_of_it.empty()) lost.push_back(samples_of_earlier_tests(knows_of_it));
   if (keeps_acts() && !has_unrecorded_acts_.empty()) lost.push_back(what_people_said(has_unrecorded_acts_));
-  if (desk_ && !has_older_acts_.empty()) lost.emplace_back(kEndedUnseen);
+  if (desk_ && !knows_of_it.empty()) lost.emplace_back(kEndedUnseen);
   if (lost.empty()) return std::nullopt;
   std::string all = lost.front();
   for (std::size_t k = 1; k < lost.size(); ++k) all += "; and for " + lost[k];
@@ -395,14 +416,18 @@ Status LayerRunner::compare_acts() {
   }
   if (!is_new_) return {};
   const auto what = lost_for_ever();
-  if (!what && !all_heard()) return {};
-  is_new_ = false;
-  Status kept = in_batch([&] { return journal_.no_longer_new(); }, Survives::power_cuts);
+  const bool is_remade = what || !has_read_more_.empty();
+  // A service that never runs keeps no loss secret that another knows of.
+  const bool is_heard =
+      all_heard() || (is_remade && std::chrono::steady_clock::now() - started_ >= options_.longest_without_acts);
+  if (!what && !is_heard) return {};
   const std::string& other = !has_read_more_.empty()    ? has_read_more_
                              : !has_older_acts_.empty() ? has_older_acts_
                                                         : has_unrecorded_acts_;
-  const bool is_remade = what || !has_read_more_.empty();
-  return kept && is_remade ? tell_of_journal(journal_lost(other), what) : kept;
+  // Told first: who is killed between the two tells it again.
+  if (Status told = is_remade ? tell_of_journal(journal_lost(other), what) : Status(); !told) return told;
+  is_new_ = false;
+  return in_batch([&] { return journal_.no_longer_new(); }, Survives::power_cuts);
 }
 
 std::optional<std::string> LayerRunner::samples_lost_with(const std::string& other) const {
@@ -438,10 +463,12 @@ Status LayerRunner::tell_of_journal(const std::string& reason, const std::option
 Status LayerRunner::note_acts() {
   if (Status looked = look_at_own_acts(); !looked) return looked;
   if (Status compared = compare_acts(); !compared) return compared;
-  if (new_anchors_.empty()) return {};
+  if (new_anchors_.empty() && new_names_.empty()) return {};
   return in_batch([this] {
     for (const AuditAnchor& heard : std::exchange(new_anchors_, {}))
       if (Status kept = journal_.keep_anchor(heard); !kept) return kept;
+    for (const std::string& topic : std::exchange(new_names_, {}))
+      if (Status kept = journal_.set_position({topic, first_names_[topic], 1}); !kept) return kept;
     return Status();
   });
 }

@@ -90,6 +90,7 @@ void LayerRunner::note_reused_number(const Message& message) {
 void LayerRunner::sort_in(const ServiceStatus& status) {
   if (status.writer_id == journal_.writer_id()) return;
   hear_name(status);
+  keep_name(status);
   if (status.service == kind_->name()) note_rival(status);
   note_set_aside_elsewhere(status);
   retention_.hear(status, journal_.writer_id());

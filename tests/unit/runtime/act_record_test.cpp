@@ -448,15 +448,17 @@ TEST_F(ActRecordTest, WhatWaitsForASecondPersonWaitsAgain) {
   EXPECT_THAT(counted("state_detection"), IsEmpty());
 }
 
-/// What people said is here again: there is nothing to be said anew.
-TEST_F(ActRecordTest, NoAlarmStandsWhereAllIsHadBack) {
+/// What people said is here again: the alarm says that the journal was lost, and of nothing that is to be said anew.
+TEST_F(ActRecordTest, NothingIsToBeSaidAnewWhereAllIsHadBack) {
   test("a", "2029-01-01");
   const std::string said = say(retraction(kTestRetracted, "a"));
   lose("state_detection");
   start_all();
   all_take("advisory/" + said);
   step_for(std::chrono::milliseconds(1200), [this] { step(); });  // acts are looked at each second
-  EXPECT_THAT(alarms("state_detection"), IsEmpty());
+  EXPECT_THAT(alarms("state_detection"),
+              ElementsAre(::testing::Field(
+                  &SetAside::reason, AllOf(HasSubstr("the journal was lost"), ::testing::Not(HasSubstr("but for"))))));
 }
 
 /// The comparison of records waits for a service that never runs. Meanwhile people speak, and services restart.

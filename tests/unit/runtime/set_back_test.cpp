@@ -13,6 +13,7 @@ class SetBackTest : public ::testing::Test {
   [[nodiscard]] RunnerOptions options() const {
     RunnerOptions options = fast_options();
     options.strangers.services = services_;
+    options.longest_without_acts = std::chrono::milliseconds(500);
     return options;
   }
   /// Publishes test `pst` as number `sequence`.
@@ -92,12 +93,14 @@ TEST_F(SetBackTest, WhatComesAgainAsItWasChangesNothing) {
 /// What a neighbour says it has read of the own stream, in the own journal or in one before it.
 class OwnJournal : public SetBackTest {
  protected:
-  OwnJournal() : SetBackTest({"health_assessment", "data_manipulation"}) {}
-  void hear_of_own(const std::string& writer, std::uint64_t read) {
+  explicit OwnJournal(const std::vector<std::string>& services = {"health_assessment", "data_manipulation"})
+      : SetBackTest(services) {}
+  void hear_of_own(const std::string& writer, std::uint64_t read) { hear_of({{"health_report", writer, read}}); }
+  void hear_of(const std::vector<StreamPosition>& received) {
     ServiceStatus status;
     status.service = "data_manipulation";
     status.writer_id = "downstream";
-    status.received = {{"health_report", writer, read}};
+    status.received = received;
     EXPECT_TRUE(writer_.publish(status));
     // An alarm is in the journal within a second or two.
     EXPECT_TRUE(step_until([&] { return !told().empty() || std::chrono::steady_clock::now() > begin_ + wait_; },
@@ -153,6 +156,92 @@ TEST_F(OwnJournal, BeforeWhichThereWasAnotherIsAnAlarm) {
   EXPECT_THAT(told(), ::testing::ElementsAre(::testing::AllOf(
                           ::testing::HasSubstr("the journal was lost, as data_manipulation knows of one before it"),
                           ::testing::HasSubstr("or somebody else sends heartbeats in its name"))));
+}
+
+/// Nobody reads the messages of the last layer: who it was is known by its heartbeat.
+TEST_F(OwnJournal, BeforeWhichItsServiceHadAnotherNameIsAnAlarm) {
+  hear_of({{"service_status/health_assessment", "joining-of-yesterday", 1}});
+  EXPECT_THAT(told(), ::testing::ElementsAre(
+                          ::testing::HasSubstr("the journal was lost, as data_manipulation knows of one before it")));
+}
+
+TEST_F(OwnJournal, OfWhichOthersKnowTheNameIsNone) {
+  wait_ = std::chrono::milliseconds(1500);
+  hear_of({{"service_status/health_assessment", process_.journal().writer_id(), 1},
+           {"service_status/data_acquisition", "another", 1}});
+  EXPECT_THAT(told(), ::testing::IsEmpty());
+}
+
+/// The loss is told also where not all neighbours run, as the one that is down may never come.
+class BesideASilentService : public OwnJournal {
+ protected:
+  BesideASilentService() : OwnJournal({"health_assessment", "data_manipulation", "advisory_generation"}) {}
+};
+
+TEST_F(BesideASilentService, ALostJournalIsAnAlarm) {
+  hear_of_own("joining-of-yesterday", 7);
+  EXPECT_THAT(told(), ::testing::ElementsAre(
+                          ::testing::HasSubstr("the journal was lost, as data_manipulation knows of one before it")));
+}
+
+/// A service remembers the others for them: the first name of each that had a history, also for the time after a restart.
+class NamesOfOthers : public OwnJournal {
+ protected:
+  NamesOfOthers() { EXPECT_TRUE(writer_.subscribe_service_topics()); }
+  void hear(const std::string& writer, std::uint64_t written) {
+    ServiceStatus status;
+    status.service = "data_manipulation";
+    status.writer_id = writer;
+    status.written = {{"test_features", writer, written}};
+    EXPECT_TRUE(writer_.publish(status));
+    process_.step();
+  }
+  /// In heartbeats from now on, and in the journal: a second later.
+  std::set<std::string> names() {
+    std::set<std::string> found;
+    const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(1500);
+    while (std::chrono::steady_clock::now() < until) {
+      process_.step();
+      for (const BusItem& item : writer_.receive(std::chrono::milliseconds(1), 1000))
+        if (const auto* status = std::get_if<ServiceStatus>(&item))
+          for (const StreamPosition& read : status->received)
+            if (read.topic == "service_status/data_manipulation") found.insert(read.writer_id);
+    }
+    std::set<std::string> kept;
+    const std::vector<StreamPosition> positions = process_.journal().positions().value();
+    for (const StreamPosition& one : positions)
+      if (one.topic.starts_with("service_status/")) kept.insert(one.writer_id);
+    EXPECT_EQ(kept, found);
+    return found;
+  }
+};
+
+TEST_F(NamesOfOthers, AreThoseOfServicesWithAHistory) {
+  hear("new", 0);
+  EXPECT_THAT(names(), ::testing::IsEmpty());
+  hear("of yesterday", 3);
+  hear("of today", 4);
+  EXPECT_THAT(names(), ::testing::ElementsAre("of yesterday"));
+}
+
+TEST(NameOfAnother, IsToldInTheFirstHeartbeatAfterARestart) {
+  const Place place;
+  const StreamPosition name{"service_status/data_manipulation", "of yesterday", 1};
+  {
+    Journal journal = std::move(*Journal::open(place.connection(), "health_assessment"));
+    ASSERT_TRUE(journal.begin());
+    ASSERT_TRUE(journal.set_position(name));
+    ASSERT_TRUE(journal.commit());
+  }
+  const auto network = std::make_shared<InMemoryNetwork>();
+  InMemoryBus listener(network);
+  ASSERT_TRUE(listener.subscribe_service_topics());
+  Process process(
+      network, [] { return std::make_unique<JoiningLayer>(); }, place.connection());
+  process.start();
+  const std::vector<BusItem> heard = listener.receive(std::chrono::milliseconds(5000), 1);
+  ASSERT_THAT(heard, ::testing::SizeIs(1));
+  EXPECT_THAT(std::get<ServiceStatus>(heard[0]).received, ::testing::ElementsAre(name));
 }
 
 TEST_F(OwnJournal, OfWhichNobodyReadMoreIsNone) {

@@ -19,6 +19,14 @@ fs::path copy_of(const std::string& directory, const std::string& service) {
   return fs::path(directory) / (service + ".db");
 }
 
+/// The copy is whole, and no service has the journal open.
+Status may_be_restored(const fs::path& copy, const std::string& connection, const std::string& service) {
+  if (Status whole = check_copy(copy.string(), connection, service); !whole) return whole;
+  if (is_missing(connection)) return {};
+  const auto lock = JournalLock::take(Journal::file_of(connection));
+  return lock ? Status() : fail(lock.error());
+}
+
 }  // namespace
 
 int run_backup(const BackupOptions& options) {
@@ -51,10 +59,11 @@ int run_restore(const BackupOptions& options) {
                      .advice = "name the directory that `sealwatch backup` wrote to"});
       return kBadInput;
     }
-  for (const auto& [service, connection] : *connections)  // all or nothing, of services that still run
-    if (fs::exists(copy_of(options.directory, service), none) && !is_missing(connection))
-      if (const auto lock = JournalLock::take(Journal::file_of(connection)); !lock) {
-        complain(lock.error());
+  // All or nothing: who is refused one copy has all journals as they were.
+  for (const auto& [service, connection] : *connections)
+    if (const fs::path copy = copy_of(options.directory, service); fs::exists(copy, none))
+      if (const Status free = may_be_restored(copy, connection, service); !free) {
+        complain(free.error());
         return kBadInput;
       }
   bool found = false;

@@ -101,12 +101,16 @@ Status back_up_journal(const std::string& connection, const std::string& service
   return put_in_place(part, copy);
 }
 
-Result<std::string> restore_journal(const std::string& copy, const std::string& connection,
-                                    const std::string& service) {
+Status check_copy(const std::string& copy, const std::string& connection, const std::string& service) {
   if (!connection.starts_with(kFile))
     return refuse(without_password(connection), "is a journal in a server",
                   "restore it with the server's own tools: pg_restore");
-  if (Status whole = check_whole(copy, service); !whole) return fail(whole.error());
+  return check_whole(copy, service);
+}
+
+Result<std::string> restore_journal(const std::string& copy, const std::string& connection,
+                                    const std::string& service) {
+  if (Status whole = check_copy(copy, connection, service); !whole) return fail(whole.error());
   const std::string file = Journal::file_of(connection);
   std::error_code failed;
   if (const fs::path folder = fs::path(file).parent_path(); !folder.empty()) fs::create_directories(folder, failed);

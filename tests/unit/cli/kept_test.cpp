@@ -257,6 +257,22 @@ TEST_F(Kept, AStateDirectoryIsNoBackupOfItself) {
   EXPECT_EQ(show(kAsset).status, kOk) << "and it is where it was";
 }
 
+/// Who is refused one copy has all journals as they were, also those before it.
+TEST_F(Kept, ABackupWithADamagedCopyRestoresNothing) {
+  const auto backup = folder_ / "backup";
+  ASSERT_EQ(said([&] { return run_backup({kConfig, state_.string(), backup.string()}); }).status, kOk);
+  conclude("prognostic_assessment", estimate(60));
+  std::ofstream(backup / "state_detection.db") << std::string(8192, 'x');
+  const Said refused = said([&] { return run_restore({kConfig, state_.string(), backup.string()}); });
+  EXPECT_EQ(refused.status, kBadInput);
+  EXPECT_THAT(refused.errors, HasSubstr("state_detection.db"));
+  EXPECT_THAT(refused.output, IsEmpty());
+  EXPECT_EQ(show("leakage_estimate/life-60").status, kOk) << "of a service whose copy is whole";
+  std::filesystem::remove(backup / "state_detection.db");
+  EXPECT_EQ(said([&] { return run_restore({kConfig, state_.string(), backup.string()}); }).status, kOk);
+  EXPECT_EQ(show("leakage_estimate/life-60").status, kBadInput);
+}
+
 TEST_F(Kept, JournalsThatTheConfigurationNamesWinOverTheStateDirectory) {
   const auto elsewhere = folder_ / "elsewhere";
   const auto config = folder_ / "config";

@@ -1,5 +1,6 @@
 #include "services/common/runtime/daemon.hpp"
 
+#include <fcntl.h>
 #include <malloc.h>
 #include <pthread.h>
 #include <signal.h>
@@ -228,9 +229,20 @@ int run(const Arguments& arguments, const DaemonParts& parts) {
   return kOk;
 }
 
+/// Whoever starts a service without them has the first files that it opens in their place: its warnings, and those of
+/// libraries, would go into a lock or the log.
+void open_standard_streams() {
+  int opened = -1;
+  do {
+    opened = ::open("/dev/null", O_RDWR);
+  } while (opened >= 0 && opened <= STDERR_FILENO);
+  if (opened >= 0) ::close(opened);
+}
+
 }  // namespace
 
 int run_daemon(int argc, const char* const* argv, const DaemonParts& parts) {
+  open_standard_streams();
   give_large_blocks_back();
   const auto arguments = parse(argc, argv, parts);
   if (!arguments) return arguments.error();

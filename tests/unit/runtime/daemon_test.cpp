@@ -248,6 +248,22 @@ TEST_F(DaemonTest, AFullDiskIsNoBadConfiguration) {
   EXPECT_EQ(*on_full_disk, 3);
 }
 
+/// Else the first files that it opens are its standard streams, and a warning is written over its lock.
+TEST_F(DaemonTest, StartedWithoutStandardStreamsItHasNone) {
+  place_.write("sealwatch.yaml", "domain: 999\n");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::close(stream);
+    (void)run(usual());
+    std::error_code none;
+    const auto there = std::filesystem::read_symlink("/proc/self/fd/2", none);
+    ::_exit(there == "/dev/null" ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+}
+
 TEST_F(DaemonTest, RefusesABadConfigurationBeforeAnythingStarts) {
   place_.write("sealwatch.yaml", "domian: 1\nstate_directroy: x\n");
   ::testing::internal::CaptureStderr();

@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
+#include <system_error>
 
 #include "sealwatch/core/visible_text.hpp"
 
@@ -59,9 +61,13 @@ std::string quoted(const std::string& given) {
 
 spdlog::sink_ptr file_sink(const LoggingConfig& config, const std::string& service) {
   std::filesystem::create_directories(config.directory);
-  return std::make_shared<spdlog::sinks::rotating_file_sink_mt>(
-      (std::filesystem::path(config.directory) / (service + ".log")).string(),
-      static_cast<std::size_t>(config.rotate_at_MB * 1e6), static_cast<std::size_t>(config.rotated_files));
+  const std::filesystem::path file = std::filesystem::path(config.directory) / (service + ".log");
+  std::error_code none;
+  if (std::filesystem::is_fifo(file, none))  // to open it would wait for ever for somebody who reads it
+    throw std::runtime_error(file.filename().string() + " is a pipe");
+  return std::make_shared<spdlog::sinks::rotating_file_sink_mt>(file.string(),
+                                                                static_cast<std::size_t>(config.rotate_at_MB * 1e6),
+                                                                static_cast<std::size_t>(config.rotated_files));
 }
 
 /// "<4>" before a line: its priority for systemd's journal (sd-daemon(3)), which takes a line without for information.

@@ -52,8 +52,9 @@ std::string read_from(int descriptor) {
   return {content.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0))};
 }
 
+/// A pipe of that name is not waited for, here and where it is written.
 std::string content_of(const std::string& file) {
-  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return {};
   std::string text = read_from(descriptor);
   ::close(descriptor);
@@ -112,7 +113,7 @@ void JournalLock::write() const {
   }
   write_to(descriptor_, text);
   if (!last_ || !holds()) return;
-  const int mark = ::open(mark_file_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
+  const int mark = ::open(mark_file_.c_str(), O_WRONLY | O_CREAT | O_NONBLOCK | O_CLOEXEC | O_NOFOLLOW, 0644);
   if (mark < 0) return;
   write_to(mark, text);
   ::close(mark);

@@ -1,8 +1,14 @@
 // Log lines, and the files they go to.
 #include "services/common/runtime/log.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <future>
 
 #include "tests/unit/runtime/yaml_place.hpp"
 
@@ -44,6 +50,24 @@ TEST_F(LogTest, ALineAboutATestNamesTestAssetAndMessage) {
       lines()[0],
       MatchesRegex("[0-9-]*T[0-9:]*\\.[0-9][0-9][0-9]Z info state_detection concluded topic=state_report pst=P1 "
                    "asset=XT03-MV2 message=state_report/P1 verdict=passed"));
+}
+
+/// A service that waits for somebody who reads its log says nothing, not even that.
+TEST_F(LogTest, APipeInItsPlaceIsRefusedByName) {
+  const std::string directory = place_.directory() + "/log";
+  std::filesystem::create_directory(directory);
+  const std::string pipe = directory + "/state_detection.log";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  LoggingConfig config;
+  config.directory = directory;
+  auto started = std::async(std::launch::async, [&] { return start_logging(config, "state_detection"); });
+  const bool done = started.wait_for(std::chrono::seconds(20)) == std::future_status::ready;
+  const int other_end = ::open(pipe.c_str(), O_RDWR | O_CLOEXEC);  // lets go of who waits
+  ASSERT_TRUE(done);
+  const Status status = started.get();
+  ::close(other_end);
+  ASSERT_FALSE(status);
+  EXPECT_THAT(status.error().describe(), HasSubstr("state_detection.log is a pipe"));
 }
 
 TEST_F(LogTest, AValueWithSpacesOrLineBreaksStaysOneField) {

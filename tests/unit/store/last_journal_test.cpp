@@ -1,8 +1,12 @@
 // Another journal than the one that was used last: none, an older copy, one whose log was cut, or another's.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
+#include <future>
 
 #include "services/common/store/backup.hpp"
 #include "services/common/store/journal.hpp"
@@ -78,6 +82,20 @@ TEST_F(LastJournal, ThatWasRemovedWithItsLockIsTold) {
 }
 
 /// Who removes the mark, too, begins anew.
+/// Somebody may have made one of anything that is in the state directory; nobody need ever read it.
+TEST_F(LastJournal, WhoseMarkIsAPipeIsOpenedWithoutIt) {
+  fs::remove(file() + ".lock");
+  const std::string mark = (place_.directory() / "journal.mark").string();
+  fs::remove(mark);
+  ASSERT_EQ(::mkfifo(mark.c_str(), 0600), 0);
+  auto opened = std::async(std::launch::async, [this] { return open(place_).writer_id(); });
+  const bool done = opened.wait_for(std::chrono::seconds(20)) == std::future_status::ready;
+  const int other_end = ::open(mark.c_str(), O_RDWR | O_CLOEXEC);  // lets go of who waits
+  EXPECT_TRUE(done);
+  EXPECT_FALSE(opened.get().empty());
+  ::close(other_end);
+}
+
 TEST_F(LastJournal, OfWhichNothingIsLeftIsNotMissed) {
   for (const auto& entry : fs::directory_iterator(place_.directory())) fs::remove(entry);
   EXPECT_THAT(told(), IsEmpty());

@@ -131,6 +131,15 @@ bool JournalLock::holds() const {
 }
 
 std::optional<Error> lock_schema(soci::session& sql, const std::string& name) {
+  std::string schema;
+  soci::indicator there = soci::i_null;
+  sql << "SELECT current_schema()", soci::into(schema, there);
+  if (there == soci::i_null)
+    return Error{.file = name,
+                 .place = "journal",
+                 .value = {},
+                 .rule = "its schema is not there: it was dropped or renamed, or search_path names another",
+                 .advice = "restore it from the server's backup; or CREATE SCHEMA, and the service makes it again"};
   int taken = 0;
   sql << "SELECT CASE WHEN pg_try_advisory_lock(hashtext('sealwatch journal ' || current_schema())) THEN 1 ELSE 0 END",
       soci::into(taken);

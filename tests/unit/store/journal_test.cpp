@@ -376,6 +376,16 @@ TEST_P(JournalTest, WhoLostItsLockWritesNoMore) {
   EXPECT_EQ(all_outputs(second).size(), 2U);
 }
 
+/// Somebody dropped it: there is no other process to be stopped.
+TEST_P(JournalTest, InASchemaThatIsNotThereSaysSo) {
+  if (GetParam() == "sqlite3") GTEST_SKIP() << "a file has no schema";
+  const Result<Journal> journal =
+      Journal::open(place_.connection() + " options='-c search_path=sealwatch_nowhere'", "state_detection");
+  ASSERT_FALSE(journal.has_value());
+  EXPECT_THAT(journal.error().describe(), HasSubstr("its schema is not there"));
+  EXPECT_THAT(journal.error().advice, HasSubstr("CREATE SCHEMA"));
+}
+
 TEST_P(JournalTest, IsOpenForOneAtATime) {
   {
     const Journal first = open();

@@ -10,7 +10,7 @@ namespace sealwatch::equations {
 namespace {
 
 // Shares of the site's size: of a strength that is usual, from which one matters, and beyond which none goes.
-constexpr double kUsual = 0.1, kMatters = 0.01, kMost = 10.0;
+constexpr double kUsualShare = 0.1, kMatters = 0.01, kLargest = 10.0;
 constexpr const char* kCornerSquared = "4e-4";  // of (s / S)^2: kCorner of power_law.hpp
 
 // A signal by its usual size, as it is written in equations and as people read it.
@@ -93,9 +93,9 @@ class Curves {
     text.parameters.push_back({.name = strength,
                                .unit = site_.unit,
                                .meaning = "strength",
-                               .start = {kUsual * size},
-                               .min = -kMost * size,
-                               .max = kMost * size,
+                               .start = {kUsualShare * size},
+                               .min = -kLargest * size,
+                               .max = kLargest * size,
                                .significant = kMatters * size,
                                .strength = true});
     text.parameters.push_back(std::move(of_shape));

@@ -51,11 +51,11 @@ class Curves {
           k + "*" + ratio.written + "*" + even_power(ratio, a + " - 1"),
           k + " sgn(" + signal.name + ") abs(" + ratio.read + ")^" + a, "a power of " + signal.name);
       add(name + "_even_power", k, shape(b, "1", {2.0, 1.0}, 0.5, 5.0), k + "*" + even_power(ratio, b),
-          k + " abs(" + ratio.read + ")^" + b, "the same for both directions of " + signal.name);
+          k + " abs(" + ratio.read + ")^" + b, "a power of " + signal.name + ", the same in both directions");
       const double size = *signal.size;
       add(name + "_saturation", k, shape(w, signal.unit, {0.1 * size, 0.01 * size}, 1e-3 * size, 2.0 * size),
           k + "*tanh(" + signal.name + "/" + w + ")", k + " tanh(" + signal.name + " / " + w + ")",
-          "ends at a constant size when " + signal.name + " grows");
+          "grows with " + signal.name + " up to a constant size");
       for (const TextSignal& other : site_.signals) {
         if (&other == &signal) continue;
         const Ratio by = ratio_of(other);
@@ -63,7 +63,7 @@ class Curves {
         add(name + "_by_" + name_of(other), k, shape(exponent, "1", {1.0, 2.0}, 0.2, 5.0),
             k + "*" + ratio.written + "*" + even_power(by, exponent),
             k + " (" + ratio.read + ") abs(" + by.read + ")^" + exponent,
-            "in proportion to " + signal.name + ", by " + other.name);
+            "in proportion to " + signal.name + " and to a power of " + other.name);
       }
     }
     return std::move(laws_);

@@ -40,9 +40,7 @@ std::string separating_test(const FoundEffect& effect, bool is_stroke_test) {
 }  // namespace
 
 std::string law_in_words(const LawAt& law) {
-  return (law.id == "unlisted" ? "unlisted physics" : in_words(law.id))
-      .append(" at ")
-      .append(element_in_words(law.element));
+  return in_words(law.id).append(" at ").append(element_in_words(law.element));
 }
 
 std::string left_in_words(const PooledFit& fit) {

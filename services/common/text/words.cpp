@@ -6,6 +6,7 @@
 namespace sealwatch::text {
 
 std::string in_words(std::string_view identifier) {
+  if (identifier == "unlisted") return "unlisted physics";  // the id of what no law of the list describes
   std::string text;
   for (const char letter : identifier) {
     if (letter == '_')

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -206,14 +207,17 @@ class RecordedPlantSystem final : public PlantSystem<Model, WithPhysics> {
     if constexpr (Directions > kStates)
       for (std::size_t site = 0; site < System::kSites; ++site)
         extra[site].derivative[static_cast<std::size_t>(kStates) + site] += 1.0;
+    std::span<const double> weights;
+    if (injected_ != nullptr) weights = this->weights_at(t);
     for (std::size_t k = 0; k < which.size(); ++k)
       chain_to_columns(evaluate_output(which[k], System::plant_state(state), input, this->values().plant, extra), point,
-                       stride, signals + k * columns_);
+                       stride, weights, signals + k * columns_);
     add_parameter_parts(which, this->state_of(point, stride), input, signals);
   }
 
   template <int Directions>
-  void chain_to_columns(const Dual<Directions>& result, const double* point, std::size_t stride, double* signal) const {
+  void chain_to_columns(const Dual<Directions>& result, const double* point, std::size_t stride,
+                        std::span<const double> weights, double* signal) const {
     signal[0] = result.value;
     std::fill(signal + 1, signal + columns_, 0.0);
     for (int k = 0; k < this->rows(); ++k) {
@@ -222,9 +226,9 @@ class RecordedPlantSystem final : public PlantSystem<Model, WithPhysics> {
       for (std::size_t column = 1; column < columns_; ++column) signal[column] += slope * point[k * stride + column];
     }
     if constexpr (Directions > kStates)
-      for (std::size_t e = 0; e < injected_->entries().size(); ++e) {
+      for (std::size_t e = 0; e < weights.size(); ++e) {
         const auto [column, site] = injected_->entries()[e];
-        signal[1 + free_ + column] += result.derivative[static_cast<std::size_t>(kStates) + site] * this->weights()[e];
+        signal[1 + free_ + column] += result.derivative[static_cast<std::size_t>(kStates) + site] * weights[e];
       }
   }
 

@@ -18,6 +18,7 @@
 #include "sealwatch/model/dual.hpp"
 #include "sealwatch/model/physics.hpp"
 #include "sealwatch/model/simulation.hpp"
+#include "services/common/model/injected_weights.hpp"
 #include "services/common/model/physics_terms.hpp"
 #include "services/common/model/recorded_input.hpp"
 #include "services/common/model/recorded_system.hpp"
@@ -56,7 +57,7 @@ class PlantSystem : public SizedSystem<kSizeOf<Model, WithPhysics>> {
 
   PlantSystem(const RecordedInput& input, const PhysicsTerms& terms, const ModelValues& values,
               std::span<const FreeQuantity> free, InjectedColumns* injected)
-      : input_(input), terms_(terms), injected_(injected), injected_begin_(1 + free.size()) {
+      : input_(input), terms_(terms), injected_(injected), weights_(injected), injected_begin_(1 + free.size()) {
     assign(values_, values);
     for (std::size_t k = 0; k < free.size(); ++k)
       if (free[k].is_of_recording()) recording_.push_back({1 + k, free[k]});
@@ -66,7 +67,6 @@ class PlantSystem : public SizedSystem<kSizeOf<Model, WithPhysics>> {
       const std::span own(parameters, term.law->parameters.size());
       known_laws_.insert(known_laws_.end(), kSites, {.at = law_input({}, kNowhere, own, term.roundings)});
     }
-    if (injected_ != nullptr) weights_.resize(injected_->entries().size());
   }
 
   [[nodiscard]] int states() const override { return rows(); }
@@ -90,9 +90,13 @@ class PlantSystem : public SizedSystem<kSizeOf<Model, WithPhysics>> {
     return fast;
   }
 
-  void set_segment(std::size_t segment) override { segment_ = segment; }
+  void set_segment(std::size_t segment) override {
+    segment_ = segment;
+    weights_.forget();
+  }
   [[nodiscard]] const Values<double>& values() const { return values_; }
-  [[nodiscard]] const std::vector<double>& weights() const { return weights_; }
+  /// Of the injected columns, within the last step.
+  [[nodiscard]] std::span<const double> weights_at(double t) const { return weights_.at(t); }
 
   void evaluate(double t, const double* y, double* f) const override {
     const auto result = rates<double>(state_of(y), input_at(t), values_);
@@ -258,7 +262,7 @@ class PlantSystem : public SizedSystem<kSizeOf<Model, WithPhysics>> {
     const std::array<double, kSites> base = extra<double>(y, input, values_);
     for (std::size_t site = 0; site < kSites; ++site)
       signals[site] = Equations::template signals<double>(site, plant, input, values_.plant, base);
-    injected_->weigh(t, signals, weights_);
+    const std::span<const double> weights = weights_.weigh(t, signals);
     std::array<Direction, kSites> sum;
     for (std::size_t site = 0; site < kSites; ++site)
       sum[site] = Direction::variable(base[site], static_cast<int>(site));
@@ -267,7 +271,7 @@ class PlantSystem : public SizedSystem<kSizeOf<Model, WithPhysics>> {
     for (std::size_t e = 0; e < entries.size(); ++e)
       for (int row = 0; row < kPlantStates; ++row)
         x[row * stride + injected_begin_ + entries[e].column] +=
-            factor * result[row].derivative[entries[e].site] * weights_[e];
+            factor * result[row].derivative[entries[e].site] * weights[e];
   }
 
  private:
@@ -318,8 +322,8 @@ class PlantSystem : public SizedSystem<kSizeOf<Model, WithPhysics>> {
   const RecordedInput& input_;
   const PhysicsTerms& terms_;
   InjectedColumns* injected_;
+  mutable InjectedWeights weights_;
   std::size_t injected_begin_;
-  mutable std::vector<double> weights_;
   Values<double> values_;
   std::vector<Column> recording_;
   /// A law in force with its parameters, where it was evaluated last at a site.

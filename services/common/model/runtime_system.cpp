@@ -93,7 +93,8 @@ RuntimeSystem::RuntimeSystem(const RuntimePlant& plant, std::unique_ptr<RuntimeE
       signal_values_(sites_ * kSiteSignals, 0.0),
       state_(static_cast<std::size_t>(states()), 0.0),
       outputs_(plant.outputs.size() * columns_, 0.0),
-      last_rates_(static_cast<std::size_t>(states()), 0.0) {
+      last_rates_(static_cast<std::size_t>(states()), 0.0),
+      weights_(injected) {
   for (const ActiveTerm& active : terms.active) {
     Term term{.active = &active, .parameters = {}, .free = {}};
     for (std::size_t k = 0; k < active.law->parameters.size(); ++k)
@@ -107,7 +108,6 @@ RuntimeSystem::RuntimeSystem(const RuntimePlant& plant, std::unique_ptr<RuntimeE
   }
   added_.resize(sites_, state_.size(), free_.count);
   hidden_rates_.resize(hidden_states_, state_.size(), free_.count);
-  if (injected_ != nullptr) weights_.assign(injected_->entries().size(), 0.0);
 }
 
 std::vector<double> RuntimeSystem::scale(double relative_tolerance) const {
@@ -158,7 +158,10 @@ std::string RuntimeSystem::trouble() const {
   return text::format("{} moves fastest, by {:.3g} {}", state.name, last_rates_[fastest], rate_unit(state.unit));
 }
 
-void RuntimeSystem::set_segment(std::size_t segment) { segment_ = segment; }
+void RuntimeSystem::set_segment(std::size_t segment) {
+  segment_ = segment;
+  weights_.forget();
+}
 
 void RuntimeSystem::note(std::span<const double> rates) const { std::ranges::copy(rates, last_rates_.begin()); }
 
@@ -297,8 +300,9 @@ void RuntimeSystem::add_parameter_derivatives(double t, const double* y, double 
   const bool added = !terms_.empty() || injected_ != nullptr;
   const RuntimeDirections directions{.states = false, .parameters = !free_.of_plant.empty(), .added = added};
   const RuntimeLinearisation* slopes = nullptr;
+  std::span<const double> weights;
   if (add_laws(true)) {
-    if (injected_ != nullptr) weigh(t);
+    if (injected_ != nullptr) weights = weigh(t);
     slopes = evaluator_->linearise(RuntimeFunction::derivatives, point_, directions);
   }
   for (std::size_t row = 0; row < plant_states_; ++row) {
@@ -311,45 +315,27 @@ void RuntimeSystem::add_parameter_derivatives(double t, const double* y, double 
       to[free.column] += factor * free.factor * slopes->by_parameter.row(row)[free.differentiated];
     for (std::size_t site = 0; !terms_.empty() && site < sites_; ++site)
       add(factor * slopes->by_added.row(row)[site], added_.by_free.row(site), free_.count, to);
-    for (std::size_t e = 0; e < weights_.size(); ++e) {
+    for (std::size_t e = 0; e < weights.size(); ++e) {
       const auto [column, site] = injected_->entries()[e];
-      to[free_.count + column] += factor * slopes->by_added.row(row)[site] * weights_[e];
+      to[free_.count + column] += factor * slopes->by_added.row(row)[site] * weights[e];
     }
   }
   for (std::size_t row = 0; row < hidden_states_; ++row)
     add(factor, hidden_rates_.by_free.row(row), free_.count, x + (plant_states_ + row) * stride + 1);
 }
 
-// Weights of the injected columns at the point; those of the step's begin are kept, for outputs within the step.
-void RuntimeSystem::weigh(double t) const {
+// Weights of the injected columns at the point.
+std::span<const double> RuntimeSystem::weigh(double t) const {
   using Values = std::array<double, kSiteSignals>;
   std::vector<Values> of_site(sites_);
   const double* seen = signals(false);
   for (std::size_t site = 0; seen != nullptr && site < sites_; ++site)
     std::copy_n(seen + site * kSiteSignals, kSiteSignals, of_site[site].begin());
-  earlier_weights_ = weights_;
-  earlier_time_ = weights_time_;
-  injected_->weigh(t, of_site, weights_);
-  if (!weighed_ || t <= earlier_time_) {
-    earlier_weights_ = weights_;
-    earlier_time_ = t;
-  }
-  weights_time_ = t;
-  weighed_ = true;
+  return weights_.weigh(t, of_site);
 }
 
-std::span<const double> RuntimeSystem::weights_at(double t) const {
-  if (states() == 0) {
-    weigh(t);
-    return weights_;
-  }
-  const double step = weights_time_ - earlier_time_;
-  const double share = step > 0.0 ? std::clamp((t - earlier_time_) / step, 0.0, 1.0) : 1.0;
-  between_weights_.resize(weights_.size());
-  for (std::size_t e = 0; e < weights_.size(); ++e)
-    between_weights_[e] = earlier_weights_[e] + share * (weights_[e] - earlier_weights_[e]);
-  return between_weights_;
-}
+// Without states no step was taken: they are known at the point alone.
+std::span<const double> RuntimeSystem::weights_at(double t) const { return states() == 0 ? weigh(t) : weights_.at(t); }
 
 // An output that a held input drives directly belongs to the input of its own sample, not to that of the sample before.
 // Where there are events the sample comes after that of the jump, in the segment which begins there.

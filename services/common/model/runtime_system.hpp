@@ -14,6 +14,7 @@
 #include "sealwatch/model/physics.hpp"
 #include "sealwatch/model/runtime_equations.hpp"
 #include "sealwatch/model/simulation.hpp"
+#include "services/common/model/injected_weights.hpp"
 #include "services/common/model/physics_terms.hpp"
 #include "services/common/model/recorded_input.hpp"
 #include "services/common/model/recorded_system.hpp"
@@ -92,7 +93,7 @@ class RuntimeSystem final : public SizedSystem<kDynamicSize> {
   [[nodiscard]] bool add_laws(bool differentiate) const;
   void add_law(const LawScalar& law, const Term& term, std::size_t site, Rows& to, std::size_t row) const;
   [[nodiscard]] const double* signals(bool differentiate) const;
-  void weigh(double t) const;
+  std::span<const double> weigh(double t) const;
   [[nodiscard]] std::span<const double> weights_at(double t) const;
   [[nodiscard]] bool linearise_outputs(double t, const double* point, std::size_t stride) const;
   void note(std::span<const double> rates) const;
@@ -115,9 +116,7 @@ class RuntimeSystem final : public SizedSystem<kDynamicSize> {
   mutable std::vector<double> inputs_, input_rates_, hidden_, signal_values_, state_, outputs_, last_rates_;
   mutable const RuntimeLinearisation* signal_slopes_ = nullptr;
   mutable Rows added_, hidden_rates_;
-  mutable std::vector<double> weights_, earlier_weights_, between_weights_;
-  mutable double weights_time_ = 0.0, earlier_time_ = 0.0;
-  mutable bool weighed_ = false;
+  mutable InjectedWeights weights_;
 };
 
 }  // namespace sealwatch

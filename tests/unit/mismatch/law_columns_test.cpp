@@ -101,6 +101,51 @@ TEST(LawColumns, AreTheChangeThatALittleOfTheLawMakes) {
   }
 }
 
+// Outputs lie between the ends of steps. The flow through a valve that hardly resists is the small difference of what a
+// line takes and of what the pressures do about it.
+TEST(LawColumns, AreAsExactInTheStepsThatASimulationUsuallyTakes) {
+  const AssetConfig asset = without_lags();
+  const TimeSeries recorded = standard_pst(asset, 100.0);
+  const auto simulation = PlantSimulation::create(asset, recorded);
+  ASSERT_TRUE(simulation);
+  std::vector<Case> asked = cases("eha");
+  std::erase_if(asked, [](const Case& which) {  // a shaft makes many turns in such a step
+    return which.law->hidden && which.law->hidden->shaft_angle;
+  });
+  const auto columns_with = [&](const SimulationOptions& options) {
+    std::vector<LawColumn> laws;
+    for (const Case& which : asked) {
+      std::vector<double> parameters;
+      for (const LawParameter& parameter : which.law->parameters) parameters.push_back(parameter.start.front());
+      const auto strength = std::ranges::find_if(which.law->parameters, &LawParameter::strength);
+      const auto place = static_cast<std::size_t>(strength - which.law->parameters.begin());
+      laws.push_back({.law = which.law,
+                      .sites = which.sites,
+                      .parameters = parameters,
+                      .strength = place,
+                      .unit = parameters[place]});
+    }
+    LawColumns columns(laws, (*simulation)->plant());
+    const auto outputs = (*simulation)->run((*simulation)->start(), {}, options, &columns);
+    return outputs ? outputs->sensitivities : RowMatrix();
+  };
+  const RowMatrix usual = columns_with({.maximum_step_s = 0.02}), exact = columns_with(kTight);
+  ASSERT_EQ(usual.cols(), std::ssize(asked));
+  ASSERT_EQ(exact.cols(), std::ssize(asked));
+  const auto channels = (*simulation)->channels();
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    double size = 0.0, error = 0.0;
+    for (Eigen::Index row = 0; row < exact.rows(); ++row) {
+      const auto column = static_cast<Eigen::Index>(k);
+      const double noise = asset.sensors.at(channels[static_cast<std::size_t>(row) % channels.size()]).noise_std;
+      size += std::pow(exact(row, column) / noise, 2);
+      error += std::pow((usual(row, column) - exact(row, column)) / noise, 2);
+    }
+    EXPECT_LT(std::sqrt(error), 0.1 * std::sqrt(size) + 0.01)
+        << asked[k].law->id << " " << asked[k].law->form << " at " << asked[k].element << ", size " << std::sqrt(size);
+  }
+}
+
 TEST(LawsInForce, HaveSensitivitiesThatAgreeWithDifferences) {
   const AssetConfig asset = without_lags();
   const TimeSeries recorded = standard_pst(asset, 100.0, 4.0);

@@ -116,8 +116,8 @@ class InjectedColumns {
   virtual ~InjectedColumns() = default;
   [[nodiscard]] virtual std::size_t columns() const = 0;
   [[nodiscard]] virtual std::span<const Entry> entries() const = 0;
-  /// w at time t for each entry, from the signals of all sites. Called in the order of time; the same time may come
-  /// twice.
+  /// w at time t for each entry, from the signals of all sites. Called at the ends of steps. Where an input jumps, time
+  /// goes back to before the last end: that step passed the jump, and what it saw there was not.
   virtual void weigh(double t, Signals signals, std::span<double> weights) = 0;
 };
 

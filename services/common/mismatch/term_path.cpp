@@ -23,6 +23,7 @@ class PathRecorder final : public InjectedColumns {
   void weigh(double t, Signals signals, std::span<double> weights) override {
     weights[0] = 0.0;
     laws_.weigh(t, signals, parts_);
+    while (!path.time_s.empty() && path.time_s.back() > t) take_back_last();
     if (path.time_s.empty() || t > path.time_s.back()) {
       path.time_s.push_back(t);
       path.signals.emplace_back();
@@ -36,6 +37,12 @@ class PathRecorder final : public InjectedColumns {
   TermPath path;
 
  private:
+  void take_back_last() {
+    path.time_s.pop_back();
+    path.signals.pop_back();
+    path.contribution.pop_back();
+  }
+
   std::size_t site_;
   std::array<Entry, 1> entry_;
   LawColumns laws_;

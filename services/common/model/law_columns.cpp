@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "sealwatch/model/law_sizes.hpp"
 
@@ -50,7 +51,7 @@ void LawColumns::advance(Shape& shape, double step_s, Signals signals) {
   const double h = step_s / steps;
   const auto rate_at = [&](double share) {
     for (std::size_t s = 0; s < kSiteSignals; ++s)
-      shape.at.signal[s].value = last_[site][s] + share * (signals[site][s] - last_[site][s]);
+      shape.at.signal[s].value = last_.signals[site][s] + share * (signals[site][s] - last_.signals[site][s]);
     return shape.law->evaluate(shape.at).rate;
   };
   double& hidden = shape.at.hidden.value;
@@ -88,12 +89,19 @@ void LawColumns::mark_not_finite(RowMatrix& sensitivities) const {
             .setConstant(std::numeric_limits<double>::quiet_NaN());
 }
 
+void LawColumns::take_back_last_step() {
+  last_ = before_;
+  for (Shape& shape : shapes_) shape.at.hidden.value = shape.hidden_before;
+}
+
 void LawColumns::weigh(double t, Signals signals, std::span<double> weights) {
-  if (!started_) last_.assign(signals.begin(), signals.end());
-  const double step_s = t - time_;
+  if (started_ && t < last_.time && before_.time <= t) take_back_last_step();
+  if (!started_) last_ = {.time = t, .signals = {signals.begin(), signals.end()}};
+  const double step_s = t - last_.time;
   for (Shape& shape : shapes_) {
     if (!shape.law->hidden) continue;
     if (!started_ && shape.law->hidden->settled) advance(shape, kSettling_s, signals);
+    if (!started_ || step_s > 0.0) shape.hidden_before = shape.at.hidden.value;
     if (started_ && step_s > 0.0) advance(shape, step_s, signals);
   }
   for (Shape& shape : shapes_)
@@ -103,8 +111,9 @@ void LawColumns::weigh(double t, Signals signals, std::span<double> weights) {
       for (const auto& [parameter, unit, first_entry] : shape.strengths)
         weights[first_entry + k] = shape.finite_or_none(unit * contribution.derivative[kSiteSignals + 1 + parameter]);
     }
-  last_.assign(signals.begin(), signals.end());
-  time_ = t;
+  if (!started_ || step_s > 0.0) std::swap(before_, last_);
+  last_.time = t;
+  last_.signals.assign(signals.begin(), signals.end());
   started_ = true;
 }
 

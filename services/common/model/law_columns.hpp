@@ -40,19 +40,25 @@ class LawColumns final : public InjectedColumns {
     };
     const Law* law = nullptr;
     std::vector<std::size_t> sites;
-    LawInput at;  ///< parameters and hidden state as they are; signals as last evaluated
+    LawInput at;                 ///< parameters and hidden state as they are; signals as last evaluated
+    double hidden_before = 0.0;  ///< at the begin of the last step
     std::vector<Strength> strengths;
     bool finite = true;  ///< everywhere so far
     [[nodiscard]] double finite_or_none(double weight);
   };
   [[nodiscard]] Shape& shape_of(const LawColumn& column, const PlantDescription& plant);
   void advance(Shape& shape, double step_s, Signals signals);
+  void take_back_last_step();
 
   std::vector<LawColumn> laws_;
   std::vector<Shape> shapes_;
   std::vector<Entry> entries_;
-  std::vector<std::array<double, kSiteSignals>> last_;  ///< signals at the last call
-  double time_ = 0.0;
+  /// When the last step ended, and the signals there.
+  struct End {
+    double time = 0.0;
+    std::vector<std::array<double, kSiteSignals>> signals;
+  };
+  End last_, before_;
   bool started_ = false;
 };
 

@@ -23,6 +23,9 @@ struct LawBounds {
 [[nodiscard]] double significant_size(const PlantDescription& plant, const LawParameter& strength);
 /// A width whose unit the plant gives no size for is that of `eha`.
 [[nodiscard]] Roundings roundings_of(const PlantDescription& plant, const Law& law);
+/// A text of the law, its equation or a parameter's meaning, with the plant's reference sizes: "abs(v / 0.5 m/s)^a_v",
+/// where it is written as "abs(v / 1 mm/s)^a_v".
+[[nodiscard]] std::string in_sizes_of(const PlantDescription& plant, const Law& law, std::string_view text);
 /// As the law is written, for `eha`.
 [[nodiscard]] Roundings roundings_of(const Law& law);
 

@@ -32,7 +32,7 @@
 namespace sealwatch {
 
 inline constexpr std::size_t kLawParameters = 4;
-inline constexpr std::size_t kLawRoundings = 2;
+inline constexpr std::size_t kLawRoundings = 3;
 /// Signals, hidden state, parameters: one direction each.
 inline constexpr int kLawDirections = static_cast<int>(kSiteSignals + 1 + kLawParameters);
 using LawScalar = Dual<kLawDirections>;
@@ -71,6 +71,8 @@ struct LawParameter {
 struct LawRounding {
   std::string_view unit;
   double width = 0.0;
+  /// The size that a power law measures its signal by, as its texts write it: "1 mm/s". The width is a fixed share of it.
+  std::string_view reference = {};
 };
 
 struct LawExpressions;  // services/common/equations/own_law.hpp

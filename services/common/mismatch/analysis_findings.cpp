@@ -58,7 +58,7 @@ void Analysis::describe_what_was_found() {
     result_.effects = describe_effects(naming_, best_, prepared(fit_), options_, carry_over ? &*carry_over : nullptr);
     if (best_.effects.size() == 1 || gross) break;
     const std::optional<Remainder> remainder =
-        remainder_among(result_.effects, law_at(best_.effects.back()),
+        remainder_among(result_.effects, law_at(best_.effects.back(), plant()),
                         [&](const LawAt& small, const LawAt& large) { return more_than_form(small, large); });
     if (!remainder) break;
     take_out(*remainder);
@@ -72,7 +72,7 @@ void Analysis::take_out_forms_of_larger_laws() {
     time_.allow_what_is_needed();
     std::vector<FoundEffect> helps(best_.effects.size());
     for (std::size_t slot = 0; slot < helps.size(); ++slot) {
-      helps[slot].what = law_at(best_.effects[slot]);
+      helps[slot].what = law_at(best_.effects[slot], plant());
       const auto blocks = held_out().gains(without(best_, slot, to_prove()), best_);
       if (!blocks || blocks->gain.empty()) return;  // nothing is known of that law alone
       helps[slot].delta_bic = -gain_interval(*blocks, dispersion(*best_.model), options_.seed).gain;
@@ -86,7 +86,7 @@ void Analysis::take_out_forms_of_larger_laws() {
 
 bool Analysis::more_than_form(const LawAt& small, const LawAt& large) {
   const auto slot_of = [&](const LawAt& law) {
-    const auto is_it = [&](const Effect& effect) { return same_place(law_at(effect), law); };
+    const auto is_it = [&](const Effect& effect) { return same_place(law_at(effect, plant()), law); };
     return static_cast<std::size_t>(std::ranges::find_if(best_.effects, is_it) - best_.effects.begin());
   };
   const std::size_t slot = slot_of(small);
@@ -103,7 +103,7 @@ bool Analysis::more_than_form(const LawAt& small, const LawAt& large) {
 void Analysis::take_out(const Remainder& remainder) {
   result_.notes.push_back(remainder.sentence);
   const auto slot = std::ranges::find_if(
-      best_.effects, [&](const Effect& effect) { return same_place(law_at(effect), remainder.law); });
+      best_.effects, [&](const Effect& effect) { return same_place(law_at(effect, plant()), remainder.law); });
   take_out(static_cast<std::size_t>(slot - best_.effects.begin()));
 }
 
@@ -129,7 +129,7 @@ Status Analysis::finish() {
   say_where();
   for (const std::string& remark : naming_.remarks) result_.notes.push_back(remark);
   note_laws_not_asked();
-  for (const Forbidden& forbidden : naming_.forbidden) result_.rejected.push_back(describe(forbidden));
+  for (const Forbidden& forbidden : naming_.forbidden) result_.rejected.push_back(describe(forbidden, plant()));
   result_.parameters = parameter_shifts(asset_, *baseline_, *best_.model);
   result_.prognosis = prognosis_shift(asset_, result_.parameters);
   result_.explained = best_.model->asset;
@@ -219,7 +219,7 @@ void Analysis::put_in_words() {
 
 void Analysis::note_laws_not_asked() {
   for (const Candidate& candidate : naming_.first.not_asked) {
-    const LawAt law = law_at({candidate.law, candidate.element});
+    const LawAt law = law_at({candidate.law, candidate.element}, plant());
     result_.notes.push_back(gives_no_number(law));
     all_compared_ = false;
   }
@@ -336,7 +336,7 @@ double Analysis::share_held_out() const {
 bool Analysis::takes_back_what_does_not_explain() {
   if (best_.effects.empty() || explains()) return false;
   std::vector<std::string> laws;
-  for (const Effect& effect : best_.effects) laws.push_back(law_in_words(law_at(effect)));
+  for (const Effect& effect : best_.effects) laws.push_back(law_in_words(effect));
   result_.notes.push_back("Not enough to be named: with " + joined(laws, " and ") +
                           " the mean squared residual of the fit recordings falls from " +
                           number(without_laws().misfit / without_laws().residuals) + " to " +
@@ -381,7 +381,7 @@ void Analysis::say_what_else_is_known() {
     remark_asset_values(result_);
   if (best_.effects.size() == 1 && same_effects(best_.effects, naming_.best.effects) && !leaves_nothing() &&
       leaves_its_form(naming_))
-    result_.notes.push_back(left_beside(law_at(best_.effects.front()), share_left_by_best(naming_)));
+    result_.notes.push_back(left_beside(law_at(best_.effects.front(), plant()), share_left_by_best(naming_)));
   const bool undetermined = result_.verdict == Verdict::undetermined;
   if (input_swings_ && undetermined) remark_faster_sampling(result_);
   if (undetermined && !too_small_by_size_.empty()) remark_law_sizes(too_small_by_size_, result_);

@@ -41,7 +41,7 @@ void Analysis::ask_the_datasheet() {
   const Data data = prepared(fit_);
   const DatasheetQuestion question{asset_, *baseline_, best_, data, options_.threads};
   std::vector<std::string> instead_of;
-  for (const Effect& effect : best_.effects) instead_of.push_back(law_in_words(law_at(effect)));
+  for (const Effect& effect : best_.effects) instead_of.push_back(law_in_words(effect));
   const auto wrong = laws > 0 ? values_in_place_of_laws(question) : values_alone(question, 1);
   if (!wrong) {
     static_cast<void>(time_.in_time(kFixedValues));  // or the question was cut
@@ -76,7 +76,7 @@ void Analysis::take_no_measurement_for_a_value() {
   const bool was_cut = std::ranges::find(time_.not_asked(), kFixedValues) != time_.not_asked().end();
   if (!was_cut || !only_measurements_are_off() || known_values(asset_, plant()).empty()) return;
   std::vector<std::string> laws;
-  for (const Effect& effect : best_.effects) laws.push_back(law_in_words(law_at(effect)));
+  for (const Effect& effect : best_.effects) laws.push_back(law_in_words(effect));
   why_none_ = values_not_asked(joined(laws, " and "), options_.time_limit_s);
 }
 
@@ -108,7 +108,7 @@ void Analysis::take_values_found() {
   if (time_.in_time("other values in place of the one that is off")) add_values_that_do_as_well(wrong);
   std::vector<std::string> replaced;
   for (const Effect& effect : naming_.replaced)
-    if (!is_among(effect, best_.effects)) replaced.push_back(law_in_words(law_at(effect)));
+    if (!is_among(effect, best_.effects)) replaced.push_back(law_in_words(effect));
   asked_values_ = trace_of(laws);
   asked_values_.push_back(asked(wrong, laws));
   beside_ = Beside{wrong, joined(replaced, " and "), joined(replaced, " and "), compared, laws};
@@ -160,7 +160,9 @@ void Analysis::look_on_from(const Naming& laws) {
 }
 
 bool Analysis::is_among(const Effect& effect, const std::vector<Effect>& effects) {
-  return std::ranges::any_of(effects, [&](const Effect& other) { return same_place(law_at(effect), law_at(other)); });
+  return std::ranges::any_of(effects, [&](const Effect& other) {
+    return effect.law->id == other.law->id && effect.element == other.element;
+  });
 }
 
 bool Analysis::take_beside_values(const WrongDatasheet& wrong, const std::vector<std::string>& laws,
@@ -228,8 +230,8 @@ void Analysis::blame_the_asset_file(const WrongDatasheet& wrong, const std::stri
                                     const std::vector<RecordingComparison>& compared) {
   std::vector<std::string> beside;
   for (const Effect& effect : wrong.with.effects) {
-    beside.push_back(law_in_words(law_at(effect)));
-    result_.beside_asset_values.push_back(law_at(effect));
+    beside.push_back(law_in_words(effect));
+    result_.beside_asset_values.push_back(law_at(effect, plant()));
   }
   result_.asset_values = wrong.values;
   why_none_ =

@@ -54,7 +54,7 @@ void draw_missing_terms(const FittedModel& baseline, const Trial& best, const Da
     }
     if (drawn) {
       if (named)
-        drawn->what = law_at(effect);
+        drawn->what = law_at(effect, simulation.plant());
       else
         drawn->law.clear();  // what the data demand there alone
       result.missing.push_back(std::move(*drawn));

@@ -190,7 +190,8 @@ const Law* plainer(const Law& law) {
 // Probabilities from the criterion: exp(-difference / 2) over all laws tried in this place. `not_asked`: a law that there
 // was no time to try.
 void weigh(FoundEffect& effect, const Effect& chosen, const std::vector<Trial>& alternatives,
-           const std::vector<double>& how_far, double best_misfit, double phi, const Law* not_asked) {
+           const std::vector<double>& how_far, double best_misfit, double phi, const Law* not_asked,
+           const PlantDescription& plant) {
   std::map<std::pair<std::string, std::string>, double> weight;  // by id and element
   weight[{effect.what.id, effect.what.element}] = 1.0;
   std::map<std::pair<std::string, std::string>, double> nearest;
@@ -206,14 +207,14 @@ void weigh(FoundEffect& effect, const Effect& chosen, const std::vector<Trial>& 
     if (key.first == effect.what.id && key.second == effect.what.element) {
       const auto same_form = [&](const LawAt& law) { return law.id == key.first && law.form == other.law->form; };
       if (other.law != chosen.law && cannot_tell && std::ranges::none_of(effect.indistinguishable, same_form))
-        effect.indistinguishable.push_back(law_at(other));
+        effect.indistinguishable.push_back(law_at(other, plant));
       continue;
     }
     weight[key] += std::exp(-0.5 * std::clamp(behind, 0.0, 1400.0));
     if (!nearest.contains(key) || behind < nearest[key]) nearest[key] = behind;
     const auto listed = [&](const LawAt& law) { return law.id == key.first && law.element == key.second; };
     if (cannot_tell && std::ranges::none_of(effect.indistinguishable, listed)) {
-      effect.indistinguishable.push_back(law_at(other));
+      effect.indistinguishable.push_back(law_at(other, plant));
       if (other.element != effect.what.element) effect.same_elements.push_back(other.element);
     }
     // A law that was refitted from several starts is one alternative: where it came nearest.
@@ -224,7 +225,7 @@ void weigh(FoundEffect& effect, const Effect& chosen, const std::vector<Trial>& 
       if (twice->misfit_above_best <= std::max(behind, 0.0)) continue;
       effect.alternatives.erase(twice);
     }
-    effect.alternatives.push_back({.what = law_at(other),
+    effect.alternatives.push_back({.what = law_at(other, plant),
                                    .misfit_above_best = std::max(behind, 0.0),
                                    .why_not = behind < kCannotTell
                                                   ? "These recordings cannot distinguish it from the chosen law."
@@ -235,7 +236,7 @@ void weigh(FoundEffect& effect, const Effect& chosen, const std::vector<Trial>& 
   }
   if (not_asked != nullptr && !weight.contains({std::string(not_asked->id), chosen.element})) {
     weight[{std::string(not_asked->id), chosen.element}] = 1.0;
-    effect.indistinguishable.push_back(law_at({not_asked, chosen.element}));
+    effect.indistinguishable.push_back(law_at({not_asked, chosen.element}, plant));
     effect.alternatives.push_back({.what = effect.indistinguishable.back(),
                                    .misfit_above_best = 0.0,
                                    .why_not = "Not tried, as time was up: the chosen law contains it."});
@@ -255,12 +256,17 @@ void weigh(FoundEffect& effect, const Effect& chosen, const std::vector<Trial>& 
 
 }  // namespace
 
-LawAt law_at(const Effect& effect) {
+LawAt law_at(const Effect& effect, const PlantDescription& plant) {
   return {.id = std::string(effect.law->id),
           .form = std::string(effect.law->form),
           .element = effect.element,
-          .law = std::string(effect.law->equation),
+          .law = in_sizes_of(plant, *effect.law, effect.law->equation),
           .meaning = std::string(effect.law->meaning)};
+}
+
+std::string law_in_words(const Effect& effect) {
+  return law_in_words(
+      LawAt{.id = std::string(effect.law->id), .form = {}, .element = effect.element, .law = {}, .meaning = {}});
 }
 
 bool same_effects(const std::vector<Effect>& a, const std::vector<Effect>& b) {
@@ -288,11 +294,11 @@ std::vector<FoundEffect> describe_effects(Naming& naming, const Trial& best, con
     const std::vector<Trial> alternatives = alternatives_of(naming, best, slot, fewer, data, options);
     const double phi = smallest_dispersion(alternatives, *best.model);
     FoundEffect effect;
-    effect.what = law_at(best.effects[slot]);
+    effect.what = law_at(best.effects[slot], plant);
     effect.parameters = parameters_of(best.effects[slot], *best.model, errors, resolution);
     effect.engineering_share = engineering_share(effect, best.effects[slot], naming.first.candidates, plant);
     weigh(effect, best.effects[slot], alternatives, how_far_behind(alternatives, best, phi, carry_over),
-          best.model->misfit, phi, naming.settled ? nullptr : plainer(*best.effects[slot].law));
+          best.model->misfit, phi, naming.settled ? nullptr : plainer(*best.effects[slot].law), plant);
     effect.delta_bic = criterion(*best.model, phi) - criterion(fewer ? *fewer->model : *naming.baseline, phi);
     return effect;
   };
@@ -383,12 +389,12 @@ std::vector<Location> locate_at_a_sensor(const PooledFit& fit) {
                        "disturbs its signal."}};
 }
 
-Rejected describe(const Forbidden& forbidden) {
+Rejected describe(const Forbidden& forbidden, const PlantDescription& plant) {
   const LawParameter& strength = forbidden.effect.law->parameters[strengths_of(*forbidden.effect.law).front()];
   std::string why = "The data would want ";
   why.append(strength.name).append(" = ").append(text::with_unit(forbidden.strength, strength.unit));
   why.append("; physics demands: ").append(forbidden.effect.law->energy).append(".");
-  return {.what = law_at(forbidden.effect),
+  return {.what = law_at(forbidden.effect, plant),
           .why = std::move(why),
           .share = forbidden.share,
           .allowed_share = forbidden.allowed_share};

@@ -7,7 +7,9 @@
 
 namespace sealwatch::mismatch {
 
-[[nodiscard]] LawAt law_at(const Effect& effect);
+[[nodiscard]] LawAt law_at(const Effect& effect, const PlantDescription& plant);
+/// "line resistance at valve 1"
+[[nodiscard]] std::string law_in_words(const Effect& effect);
 [[nodiscard]] bool same_effects(const std::vector<Effect>& a, const std::vector<Effect>& b);
 /// The law's parameters in its order, as the asset has them; none where it does not hold the law.
 [[nodiscard]] std::vector<double> parameters_in(const Effect& effect, const AssetConfig& asset);
@@ -26,7 +28,7 @@ namespace sealwatch::mismatch {
 /// The sensor of the channel that misses most: where no law asks for any of the misfit.
 [[nodiscard]] std::vector<Location> locate_at_a_sensor(const PooledFit& fit);
 
-[[nodiscard]] Rejected describe(const Forbidden& forbidden);
+[[nodiscard]] Rejected describe(const Forbidden& forbidden, const PlantDescription& plant);
 
 [[nodiscard]] std::vector<ParameterShift> parameter_shifts(const AssetConfig& datasheet, const FittedModel& before,
                                                            const FittedModel& after);

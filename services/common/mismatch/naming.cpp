@@ -593,6 +593,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     const char* const again =
         from.is_start ? "other laws in place of those found with held states" : "other laws in place of the one found";
     if (const bool asks = in_time(again); asks && from.is_start) {
+      from_other_shapes(naming, {{}, naming.baseline}, naming.first, data, options);
       another_law_for_each(naming, data, options);
       one_law_for_several(naming, data, options);
     } else if (asks) {

@@ -6,6 +6,7 @@
 
 #include "services/common/mismatch/candidates.hpp"
 #include "services/common/mismatch/effects.hpp"
+#include "services/common/mismatch/like_law.hpp"
 #include "services/common/mismatch/plain_laws.hpp"
 #include "services/common/mismatch/ranking.hpp"
 #include "services/common/mismatch/remainder.hpp"
@@ -21,7 +22,9 @@ constexpr std::size_t kNearShapes = 3;   // near the noise the linearised model 
 constexpr std::size_t kNearStarts = 1;   // and a form that contains the law begins where that ended
 constexpr double kNearly = 0.5;          // of what the best form promises
 constexpr std::size_t kStartsOfForm = 2;
-constexpr double kFar = 100.0;           // times the noise: further off no law's form can be told
+constexpr double kAlike = 0.1;           // share of a law's square that a closed form which is a form of it may lack
+constexpr double kFar = 100.0;           // times the noise: further off no law's form can be told,
+constexpr double kLeftByMost = 0.1;      // but of one that leaves no more of the misfit
 constexpr std::size_t kOtherLaws = 4;    // refits in place of a law that was found before another one
 constexpr std::size_t kSingleLaws = 10;  // refits of one law for several
 constexpr long kStartsOfRich = 6;        // of them of a law that contains a plainer one
@@ -37,10 +40,16 @@ std::vector<double> from_fitted(const Candidate& form, std::size_t point, const 
   return start;
 }
 
+const PlantDescription& plant_of(const FittedModel& model) {
+  return model.problem.recordings.front().simulation->plant();
+}
+
 // Start values of the law of an effect at its usual size and on its shape's grid; of its other forms, of laws that
-// contain it and of the closed forms (`forms`) that bear its id, also from where it ended (`term`).
+// contain it and of the closed forms (`forms`) that bear its id, also from where it ended (`term`); of all closed forms
+// that can do about what it does, from where they do.
 std::vector<std::vector<LawStart>> other_starts(const Effect& effect, const PhysicsTerm& term, const Screening& asked,
-                                                const std::vector<Candidate>& forms, bool gross) {
+                                                const std::vector<Candidate>& forms, const FittedModel& model,
+                                                bool gross) {
   const std::size_t shapes = gross ? kOtherShapes : kNearShapes, form_starts = gross ? kFormStarts : kNearStarts;
   std::vector<std::vector<LawStart>> starts;
   const auto add = [&](const Candidate& candidate, std::vector<double> parameters) {
@@ -62,8 +71,14 @@ std::vector<std::vector<LawStart>> other_starts(const Effect& effect, const Phys
          candidate.element == effect.element && candidate.law->limit == effect.law->id && point < candidate.grid.size();
          ++point)
       add(candidate, from_fitted(candidate, point, term));
+  const std::vector<double> found = parameters_in(effect, model.asset);
+  const std::vector<TermPath> paths =
+      forms.empty() || found.empty() ? std::vector<TermPath>{} : term_paths(model, effect.element, *effect.law, found);
   for (const Candidate& form : forms) {
-    if (form.law->id != effect.law->id || form.law == effect.law || form.element != effect.element) continue;
+    if (form.law == effect.law || form.element != effect.element) continue;
+    if (const auto like = most_like(form, effect, paths, plant_of(model)); like && like->lacks < kAlike)
+      add(form, like->parameters);
+    if (form.law->id != effect.law->id) continue;
     add(form, from_fitted(form, 0, term));
     for (std::size_t point = 0; point < std::min(form.grid.size(), form_starts); ++point)
       add(form, usual_size(form, point));
@@ -152,7 +167,7 @@ InPlace elsewhere_beside(const Trial& fewer, std::size_t slot, const Naming& nam
 
 std::string laws_in_words(const std::vector<Effect>& effects) {
   std::vector<std::string> laws;
-  for (const Effect& effect : effects) laws.push_back(law_in_words(law_at(effect)));
+  for (const Effect& effect : effects) laws.push_back(law_in_words(effect));
   return joined(laws, " and ");
 }
 
@@ -185,6 +200,15 @@ Trial* known_without(Naming& naming, const FittedModel& whole, const std::vector
     consider(one.fewer);
   }
   return known;
+}
+
+// Forms of the same laws, or laws that contain these.
+bool has_same_ids(const std::vector<Effect>& forms, const std::vector<Effect>& laws) {
+  return std::ranges::all_of(forms, [&](const Effect& form) {
+    return std::ranges::any_of(laws, [&](const Effect& law) {
+      return form.element == law.element && (form.law->id == law.law->id || form.law->limit == law.law->id);
+    });
+  });
 }
 
 }  // namespace
@@ -259,9 +283,9 @@ double smallest_dispersion(const std::vector<Trial>& trials, const FittedModel& 
 void from_other_shapes(Naming& naming, const Trial& before, const Screening& asked, const Data& data,
                        const ExplainOptions& options) {
   if (is_at_the_noise(naming, options)) return;
-  // Where everything misses by far, another form of one law says nothing.
+  // Where everything misses by far, another form of one law that takes little says nothing.
   std::vector<Candidate> forms;
-  if (excess(*naming.best.model) < kFar)
+  if (excess(*naming.best.model) < kFar || naming.best.model->misfit < kLeftByMost * before.model->misfit)
     forms = find_candidates(*naming.baseline->problem.recordings.front().simulation, naming.baseline->asset.physics,
                             Laws::closed_forms);
   std::vector<Trial> trials;
@@ -269,13 +293,19 @@ void from_other_shapes(Naming& naming, const Trial& before, const Screening& ask
   for (std::size_t added = before.effects.size(); added < naming.best.effects.size(); ++added) {
     const auto& physics = naming.best.model->asset.physics;
     const PhysicsTerm& term = physics[physics.size() - naming.best.effects.size() + added];
-    const auto starts = most_promising(other_starts(naming.best.effects[added], term, asked, forms, gross),
-                                       *naming.best.model, data, options);
+    const auto starts =
+        most_promising(other_starts(naming.best.effects[added], term, asked, forms, *naming.best.model, gross),
+                       *naming.best.model, data, options);
     for (Trial& trial : refit(naming.best, starts, data, options.threads,
                               {.in_place_of = {added}, .to_beat = naming.best.model->misfit}))
       trials.push_back(std::move(trial));
   }
   const double phi = smallest_dispersion(trials, *naming.best.model);
+  // A law that has a name keeps it, unless one without does clearly better.
+  std::erase_if(trials, [&](const Trial& trial) {
+    return !has_same_ids(trial.effects, naming.best.effects) &&
+           criterion(*trial.model, phi) > criterion(*naming.best.model, phi) - kWorthAnother;
+  });
   const Trial* best = best_of(trials, phi);
   // In a gross misfit the criterion hardly rises: any gain counts, as no law comes in.
   if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi)) return;

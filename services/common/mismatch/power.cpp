@@ -21,7 +21,7 @@ std::vector<Power> power_of(const Screening& screening, const PlantDescription& 
     const Candidate& candidate = screening.candidates[variant.candidate];
     if (variant.point != 0) continue;
     const LawParameter& strength = candidate.law->parameters[strengths_of(*candidate.law).front()];
-    power.push_back({.what = law_at({candidate.law, candidate.element}),
+    power.push_back({.what = law_at({candidate.law, candidate.element}, plant),
                      .minimum_detectable = variant.minimum_detectable,
                      .unit = unit_of(strength, candidate.element, plant),
                      .absorbed_share = std::clamp(variant.absorbed, 0.0, 1.0),

@@ -39,7 +39,7 @@ class Proving {
     for (std::size_t k = result_.best.effects.size(); k-- > 0;) {
       const Effect effect = result_.best.effects[k];
       if (!is_within_tolerance(effect, *result_.best.model, of_.sensors)) continue;
-      result_.notes.push_back("What fits better (" + law_in_words(law_at(effect)) +
+      result_.notes.push_back("What fits better (" + law_in_words(effect) +
                               ") is within that sensor's tolerance: it is no fault.");
       result_.best = without(result_.best, k, of_);
     }
@@ -56,7 +56,7 @@ class Proving {
       if (!differs(naming.last.p_value, *result_.best.model, of_.held_out.options.false_alarm_rate)) return;
       Trial fewer = without(result_.best, k, of_);
       if (!takes_up_little(*fewer.model, *result_.best.model)) continue;
-      result_.notes.push_back("A remainder beyond the noise would be taken in part by " + law_in_words(law_at(effect)) +
+      result_.notes.push_back("A remainder beyond the noise would be taken in part by " + law_in_words(effect) +
                               ", which takes up some of whatever is missing: it is not claimed.");
       result_.best = std::move(fewer);
     }
@@ -152,12 +152,12 @@ class Proving {
   }
 
   static std::string does_not_help(const Effect& effect) {
-    return "A law that fits better (" + law_in_words(law_at(effect)) +
+    return "A law that fits better (" + law_in_words(effect) +
            ") does not improve the held-out recordings: it is not claimed.";
   }
 
   static std::string why_not_proven(const Effect& effect, const Result<BlockGains>& blocks) {
-    const std::string law = "A law that fits better (" + law_in_words(law_at(effect)) + ") ";
+    const std::string law = "A law that fits better (" + law_in_words(effect) + ") ";
     if (!blocks)
       return law + "cannot be simulated on the held-out recordings (" + reason_in_words(blocks.error()) +
              "): it is not claimed.";

@@ -78,7 +78,7 @@ std::string size_in_words(const FittedModel& model, const Effect& effect, const 
   const std::string unit(strength.unit);
   if (strength.own_size || plant.file.empty() || unit == "s") return "";
   const double value = *estimate_of(model, physics_parameter_name(effect.element, effect.law->id, strength.name));
-  return law_in_words(law_at(effect)) + " with " + std::string(strength.name) + " = " + text::with_unit(value, unit) +
+  return law_in_words(effect) + " with " + std::string(strength.name) + " = " + text::with_unit(value, unit) +
          " fits better and is not claimed: by law_sizes in the plant file (" + unit + ": " +
          number(law_size(plant, strength)) + ") such a law matters here from " +
          text::with_unit(significant_size(plant, strength), unit) + " only, beside which this is nothing";
@@ -111,7 +111,7 @@ std::optional<NotTold> not_told_from_zero(const Trial& trial, const Resolution& 
     const Told by = told_best(model, effect, &resolution);
     if (by.errors >= told) continue;
     told = by.errors;
-    least = NotTold{slot, "A law that fits better (" + law_in_words(law_at(effect)) + ") has a strength of only " +
+    least = NotTold{slot, "A law that fits better (" + law_in_words(effect) + ") has a strength of only " +
                               number(by.errors, 2) + " standard errors, which may be nothing: it is not claimed."};
     if (const Told alone = told_best(model, effect, nullptr); alone.errors >= kTold)
       least->by_size = size_in_words(model, effect, *alone.strength, *resolution.plant);

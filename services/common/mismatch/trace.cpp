@@ -10,14 +10,22 @@
 #include "services/common/mismatch/ranking.hpp"
 
 namespace sealwatch::mismatch {
+namespace {
+
+const PlantDescription& plant_of(const FittedModel& model) {
+  return model.problem.recordings.front().simulation->plant();
+}
+
+}  // namespace
 
 std::vector<Asked> trace_of(const Naming& naming) {
   std::vector<Asked> trace;
   const double phi = smallest_dispersion(naming.trials, *naming.baseline);
   const double as_it_is = criterion(*naming.baseline, phi);
+  const PlantDescription& plant = plant_of(*naming.baseline);
   for (const Trial& trial : naming.trials) {
     Asked asked{.laws = {}, .score = as_it_is - criterion(*trial.model, phi)};
-    for (const Effect& effect : trial.effects) asked.laws.push_back(law_at(effect));
+    for (const Effect& effect : trial.effects) asked.laws.push_back(law_at(effect, plant));
     trace.push_back(std::move(asked));
   }
   return trace;
@@ -26,7 +34,8 @@ std::vector<Asked> trace_of(const Naming& naming) {
 Asked asked(const WrongDatasheet& values, const Naming& beside) {
   const double phi = smallest_dispersion(beside.trials, *beside.baseline);
   Asked asked{.laws = {}, .score = criterion(*beside.baseline, phi) - criterion(*values.with.model, phi)};
-  for (const Effect& effect : values.with.effects) asked.laws.push_back(law_at(effect));
+  const PlantDescription& plant = plant_of(*beside.baseline);
+  for (const Effect& effect : values.with.effects) asked.laws.push_back(law_at(effect, plant));
   for (const AssetValue& value : values.values.front()) asked.values.push_back(value.name);
   return asked;
 }
@@ -43,7 +52,7 @@ std::vector<CandidateCause> candidate_causes(const Screening& screening, const F
   double all = std::exp(0.5 * (nothing - largest));
   for (const Variant* variant : by_gain(screening)) {
     const Candidate& candidate = screening.candidates[variant->candidate];
-    const LawAt what = law_at({candidate.law, candidate.element});
+    const LawAt what = law_at({candidate.law, candidate.element}, plant_of(model));
     const auto known = [&](const CandidateCause& one) {
       return one.what.id == what.id && one.what.element == what.element;
     };

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "services/common/model/laws/power_law.hpp"
 #include "services/common/model/plant_tables.hpp"
+#include "services/common/text/numbers.hpp"
 #include "services/common/text/words.hpp"
 
 namespace sealwatch {
@@ -53,6 +55,18 @@ Roundings roundings_of(const PlantDescription& plant, const Law& law) {
   for (std::size_t k = 0; k < law.roundings.size(); ++k)
     widths[k] = size_of(plant, law.roundings[k].unit) * law.roundings[k].width;
   return widths;
+}
+
+std::string in_sizes_of(const PlantDescription& plant, const Law& law, std::string_view text) {
+  std::string words(text);
+  for (const LawRounding& rounding : law.roundings) {
+    const double factor = size_of(plant, rounding.unit);
+    const std::size_t at = rounding.reference.empty() ? std::string::npos : words.find(rounding.reference);
+    if (factor == 1.0 || at == std::string::npos) continue;
+    const double reference = factor * rounding.width / laws::kCorner;
+    words.replace(at, rounding.reference.size(), text::general(reference) + " " + std::string(rounding.unit));
+  }
+  return words;
 }
 
 std::vector<LawSize> reference_sizes() {

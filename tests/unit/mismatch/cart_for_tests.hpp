@@ -14,7 +14,8 @@ namespace sealwatch {
 struct CartTruth {
   double spring_N_m = 1000.0;
   double friction_N = 0.0;  ///< Coulomb
-  double fades_by = 0.0;    ///< share of the coil's force that is lost a centimetre from the middle, as the square
+  double cubic_drag_N_s3_m3 = 0.0;
+  double fades_by = 0.0;  ///< share of the coil's force that is lost a centimetre from the middle, as the square
 };
 
 inline Recording recorded_cart(const std::string& name, const CartTruth& truth, unsigned seed) {
@@ -42,7 +43,8 @@ inline Recording recorded_cart(const std::string& name, const CartTruth& truth, 
     }
     const auto acceleration = [&](double at, double speed) {
       const double force_N = kForce_N_A * (1.0 - truth.fades_by * std::pow(at / 0.01, 2)) * held_A;
-      return (force_N - kDrag_N_s_m * speed - truth.spring_N_m * at - truth.friction_N * std::tanh(speed / 1e-3)) /
+      return (force_N - kDrag_N_s_m * speed - truth.spring_N_m * at - truth.friction_N * std::tanh(speed / 1e-3) -
+              truth.cubic_drag_N_s3_m3 * speed * speed * speed) /
              kMass_kg;
     };
     const double middle = v + 0.5 * kStep_s * acceleration(x, v);

@@ -67,5 +67,28 @@ TEST(OwnSite, AForceThatFallsWithStrokeIsFoundAtTheCoil) {
   EXPECT_NEAR(found->effects[0].parameters[1].value, 2.0, 0.1);
 }
 
+/// At the site of the catalogue's kind, in the cart's sizes: 50 mm/s where the catalogue's actuator has 1 mm/s.
+TEST(OwnSite, ADragByTheCubeOfSpeedIsMeasuredBySpeedsOfTheCart) {
+  const std::string file = ::testing::TempDir() + "cart_with_cubic_drag.yaml";
+  std::string text = kCart;
+  text.replace(text.find("cart_with_a_coil"), 16, "cart_with_drag__");
+  std::ofstream(file) << text;
+  const auto plant = load_plant(file);
+  ASSERT_TRUE(plant) << combine(plant.error()).describe();
+  const CartTruth truth{.cubic_drag_N_s3_m3 = 400.0};
+  const std::vector<Recording> fit = {recorded_cart("first", truth, 1), recorded_cart("second", truth, 2),
+                                      recorded_cart("third", truth, 3)};
+  const auto found =
+      mismatch::explain(nominal_asset((*plant)->name), fit, std::vector{recorded_cart("apart", truth, 4)});
+  ASSERT_TRUE(found) << found.error().describe();
+  ASSERT_EQ(found->verdict, MismatchVerdict::mismatch) << found->summary;
+  ASSERT_EQ(found->effects.size(), 1U) << found->summary;
+  EXPECT_EQ(found->effects[0].what.form, "speed_power") << found->summary;
+  EXPECT_NE(found->effects[0].what.law.find("abs(v / 0.05 m/s)^a_v"), std::string::npos) << found->effects[0].what.law;
+  ASSERT_EQ(found->effects[0].parameters.size(), 2U);
+  EXPECT_NEAR(found->effects[0].parameters[0].value, 400.0 * std::pow(0.05, 3), 0.1 * 400.0 * std::pow(0.05, 3));
+  EXPECT_NEAR(found->effects[0].parameters[1].value, 3.0, 0.15);
+}
+
 }  // namespace
 }  // namespace sealwatch

@@ -50,7 +50,7 @@ std::vector<Argument> arguments_of(const Law& law, const PhysicsTerm& term, cons
     const auto setting = term.parameters.find(std::string(parameter.name));
     if (setting == term.parameters.end()) continue;
     arguments.push_back({"p" + std::to_string(k + 1), std::string(parameter.unit),
-                         std::string(parameter.name) + ": " + std::string(parameter.meaning),
+                         std::string(parameter.name) + ": " + in_sizes_of(plant, law, parameter.meaning),
                          text::exact(setting->second.value)});
   }
   const Roundings widths = roundings_of(plant, law);
@@ -63,7 +63,7 @@ std::vector<Argument> arguments_of(const Law& law, const PhysicsTerm& term, cons
 std::string heading(const Law& law, const PhysicsTerm& term, const PlantDescription& plant) {
   const Site* own = own_site(law, term, plant);
   const std::string_view unit = own == nullptr ? equations::names_of_site(law.kind).unit : own->unit;
-  return std::string(law.id) + " at " + term.element + ": " + std::string(law.equation) + "\n" +
+  return std::string(law.id) + " at " + term.element + ": " + in_sizes_of(plant, law, law.equation) + "\n" +
          std::string(law.meaning) + "; a loss counts positive, unit of the result: " + std::string(unit);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "sealwatch/model/law_sizes.hpp"
 #include "services/common/equations/dimension.hpp"
 #include "services/common/fmi/export/c_expressions.hpp"
 #include "services/common/fmi/export/law_formulas.hpp"
@@ -14,9 +15,9 @@ namespace sealwatch::fmi {
 namespace {
 
 /// One law at one site, whose place in e[] is `place`.
-void put_law(std::ostringstream& out, const ActiveTerm& term, const LawText& formula, std::string_view element,
-             std::size_t place, bool last) {
-  out << "  { /* " << term.law->id << " at " << element << ": " << term.law->equation << " */\n";
+void put_law(std::ostringstream& out, const ActiveTerm& term, const LawText& formula, const std::string& equation,
+             std::string_view element, std::size_t place, bool last) {
+  out << "  { /* " << term.law->id << " at " << element << ": " << equation << " */\n";
   for (std::size_t k = 0; k < kSiteSignals; ++k)
     out << "    const double s" << k + 1 << " = s[" << kSiteSignals * place + k << "];\n";
   out << "    const double h = " << (term.hidden < 0 ? "0.0" : "x[PLANT_STATES + " + std::to_string(term.hidden) + "]")
@@ -27,7 +28,7 @@ void put_law(std::ostringstream& out, const ActiveTerm& term, const LawText& for
   for (std::size_t k = 0; k < kLawRoundings; ++k)
     out << "    const double r" << k + 1 << " = " << c_number(term.roundings[k]) << ";\n";
   out << "    (void)s1, (void)s2, (void)s3, (void)s4, (void)h, (void)p1, (void)p2, (void)p3, (void)p4, (void)r1, "
-         "(void)r2;\n"
+         "(void)r2, (void)r3;\n"
       << "    e[" << place << "] += " << in_c(formula.contribution) << ";\n";
   if (term.hidden >= 0 && last) out << "    hidden_rates[" << term.hidden << "] = " << in_c(formula.rate) << ";\n";
   out << "  }\n";
@@ -56,7 +57,8 @@ Result<std::string> laws_function(const PlantDescription& plant, const PhysicsTe
                           .advice = "leave it out of the asset's physics"});
       if (first && frame.signals_see_added) out << frame.signals;
       first = false;
-      put_law(out, term, *formula, plant.sites[site].element, frame.first_site + site, site == term.sites.back());
+      put_law(out, term, *formula, in_sizes_of(plant, *term.law, term.law->equation), plant.sites[site].element,
+              frame.first_site + site, site == term.sites.back());
     }
   }
   out << frame.end;

@@ -4,8 +4,8 @@ namespace sealwatch::laws {
 
 // dV/dp = C_p (p / 10 MPa)^-b_h, p kept positive
 static LawOutput evaluate_hose_compliance_power(const LawInput& in) {
-  return {.contribution =
-              in.parameter[0] * exp(-in.parameter[1] * log(above_vacuum(in.signal[0], in.rounding) / kPressure_Pa)),
+  return {.contribution = in.parameter[0] * exp(-in.parameter[1] * log(above_vacuum(in.signal[0], in.rounding) *
+                                                                       (kCorner / in.rounding[2]))),
           .rate = {}};
 }
 
@@ -22,7 +22,7 @@ Law hose_compliance_power() {
                                   {.usual = 2e-14, .significant = 4e-15, .max = 1e-10}),
                          exponent("b_h", {0.5, 1.5, -1.0}, -2.0, 3.0)},
           .evaluate = &evaluate_hose_compliance_power,
-          .roundings = {{"Pa", kVacuum_Pa}, {"Pa", kVacuumWidth_Pa}}};
+          .roundings = {{"Pa", kVacuum_Pa}, {"Pa", kVacuumWidth_Pa}, {"Pa", kCorner * kPressure_Pa, "10 MPa"}}};
 }
 
 }  // namespace sealwatch::laws

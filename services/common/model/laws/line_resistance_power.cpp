@@ -6,7 +6,7 @@ namespace sealwatch::laws {
 static LawOutput evaluate_line_resistance_power(const LawInput& in) {
   constexpr double kLag_s = 1e-3;
   const auto& q_f = in.hidden;
-  return {.contribution = in.parameter[0] * signed_power(q_f, kFlow_m3_s, in.parameter[1], in.rounding[0]),
+  return {.contribution = in.parameter[0] * signed_power(q_f, in.parameter[1], in.rounding[0]),
           .rate = (in.signal[0] - q_f) / kLag_s};
 }
 
@@ -23,7 +23,7 @@ Law line_resistance_power() {
                          exponent("a_q", {1.5, 3.0}, 0.5, 5.0)},
           .hidden = HiddenState{.name = "line_flow", .unit = "m3/s", .scale = 8e-6, .settled = true},
           .evaluate = &evaluate_line_resistance_power,
-          .roundings = {{"m3/s", kCorner * kFlow_m3_s}}};
+          .roundings = {{"m3/s", kCorner * kFlow_m3_s, "1e-5 m3/s"}}};
 }
 
 }  // namespace sealwatch::laws

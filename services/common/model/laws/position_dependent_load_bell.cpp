@@ -5,7 +5,7 @@ namespace sealwatch::laws {
 // F = F_b exp(-|(x - x_b) / w_b|^m): m = 2 is the bump of position_dependent_load_bump.cpp, a larger m a plateau.
 static LawOutput evaluate_position_dependent_load_bell(const LawInput& in) {
   const LawScalar away = (in.signal[1] - in.parameter[1]) / in.parameter[2];
-  return {.contribution = in.parameter[0] * exp(-even_power(away, 1.0, in.parameter[3], kCorner)), .rate = {}};
+  return {.contribution = in.parameter[0] * exp(-even_power(away, in.parameter[3], kCorner)), .rate = {}};
 }
 
 Law position_dependent_load_bell() {

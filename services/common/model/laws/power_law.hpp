@@ -1,14 +1,14 @@
-// Closed forms for what no other law describes: products of powers of signals over fixed reference sizes, so that
+// Closed forms for what no other law describes: products of powers of signals over reference sizes, so that
 // every strength has the unit of what it scales and every exponent is a plain number. A form whose signals are those of
 // a listed id bears that id (a leak of the pump by any power of its speed is a speed-dependent slip); the others share
 // the id `unlisted`. Their grids start away from the exponents of the other laws.
 //
-//   signed power     sgn(s) |s / S|^a  ~  (s / S) ((s / S)^2 + (w / S)^2)^((a - 1) / 2)
-//   even power       |s / S|^b         ~          ((s / S)^2 + (w / S)^2)^(b / 2)
+//   signed power     sgn(s) |s / S|^a  ~  (s / S) ((s / S)^2 + c^2)^((a - 1) / 2)
+//   even power       |s / S|^b         ~          ((s / S)^2 + c^2)^(b / 2)
 //
-// S: reference size of the signal s, the same for every plant; w: width over which the corner at 0 is rounded, so that
-// both are finite and differentiable there for any exponent. It goes with the plant's sizes: rounded over 0.2 MPa, a
-// tank's leak would be laminar at any exponent.
+// S: reference size of the signal s; w = c S: width over which the corner at 0 is rounded, so that both are finite and
+// differentiable there for any exponent. Both go with the plant's sizes: rounded over 0.2 MPa, a tank's leak would be
+// laminar at any exponent, and at 500 times S a cubic drag of usual strength 250 000 times as large as a linear one.
 #pragma once
 
 #include <string_view>
@@ -21,7 +21,7 @@ inline constexpr std::string_view kUnlisted = "unlisted";
 inline constexpr std::string_view kClosedFormSource =
     "closed form, dimensionally consistent, for what no other law describes";
 
-// Reference sizes, S.
+// Reference sizes, S, of `eha`.
 inline constexpr double kSpeed_m_s = 1e-3;
 inline constexpr double kPosition_m = 0.05;
 inline constexpr double kPressure_Pa = 1e7;
@@ -30,21 +30,19 @@ inline constexpr double kFlow_m3_s = 1e-5;
 inline constexpr double kCommand_V = 10.0;
 inline constexpr double kCurrent_A = 1.0;
 
-/// Share of the reference size, in the sizes of `eha`, over which corners are rounded.
+/// c: share of the reference size over which corners are rounded.
 inline constexpr double kCorner = 0.02;
 /// Over which a relief valve or a lip opens, in the sizes of `eha`: it may hold the pressure there for long. [Pa]
 inline constexpr double kOpening_Pa = 1e4;
 
-[[nodiscard]] inline LawScalar even_power(const LawScalar& signal, double reference, const LawScalar& exponent,
-                                          double width) {
-  const LawScalar ratio = signal / reference;
-  const double corner = width / reference;
-  return exp(0.5 * exponent * log(ratio * ratio + corner * corner));
+/// `width`: w, by which S is known.
+[[nodiscard]] inline LawScalar even_power(const LawScalar& signal, const LawScalar& exponent, double width) {
+  const LawScalar ratio = signal * (kCorner / width);
+  return exp(0.5 * exponent * log(ratio * ratio + kCorner * kCorner));
 }
 
-[[nodiscard]] inline LawScalar signed_power(const LawScalar& signal, double reference, const LawScalar& exponent,
-                                            double width) {
-  return signal / reference * even_power(signal, reference, exponent - 1.0, width);
+[[nodiscard]] inline LawScalar signed_power(const LawScalar& signal, const LawScalar& exponent, double width) {
+  return signal * (kCorner / width) * even_power(signal, exponent - 1.0, width);
 }
 
 /// Dry friction's change of direction with any sharpness m: v / (|v|^m + w^m)^(1/m), about v / w at rest, 1 far away. m

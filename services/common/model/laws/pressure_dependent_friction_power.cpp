@@ -6,8 +6,7 @@ namespace sealwatch::laws {
 static LawOutput evaluate_pressure_dependent_friction_power(const LawInput& in) {
   const auto& [v, x, p_A, p_B] = in.signal;
   const auto& v_p = in.parameter[2];
-  return {.contribution =
-              in.parameter[0] * tanh(v / v_p) * even_power(p_A - p_B, kPressure_Pa, in.parameter[1], in.rounding[0]),
+  return {.contribution = in.parameter[0] * tanh(v / v_p) * even_power(p_A - p_B, in.parameter[1], in.rounding[0]),
           .rate = {}};
 }
 
@@ -25,7 +24,7 @@ Law pressure_dependent_friction_power() {
                      exponent("b_p", {2.0, 0.5}, -1.0, 4.0),
                      shape("v_p", "m/s", "speed over which the direction changes", {1e-4}, 5e-6, 5e-3)},
       .evaluate = &evaluate_pressure_dependent_friction_power,
-      .roundings = {{"Pa", kCorner * kPressure_Pa}}};
+      .roundings = {{"Pa", kCorner * kPressure_Pa, "10 MPa"}}};
 }
 
 }  // namespace sealwatch::laws

@@ -4,8 +4,7 @@ namespace sealwatch::laws {
 
 // T = c_w omega |(p_1 - p_2) / 10 MPa|^b_t
 static LawOutput evaluate_pressure_dependent_shaft_friction_power(const LawInput& in) {
-  return {.contribution =
-              in.parameter[0] * in.signal[0] * even_power(in.signal[1], kPressure_Pa, in.parameter[1], in.rounding[0]),
+  return {.contribution = in.parameter[0] * in.signal[0] * even_power(in.signal[1], in.parameter[1], in.rounding[0]),
           .rate = {}};
 }
 
@@ -22,7 +21,7 @@ Law pressure_dependent_shaft_friction_power() {
                                   {.usual = 1e-4, .significant = 2.5e-5, .max = 0.05}),
                          exponent("b_t", {1.0, 2.0, 0.5}, 0.1, 4.0)},
           .evaluate = &evaluate_pressure_dependent_shaft_friction_power,
-          .roundings = {{"Pa", kCorner * kPressure_Pa}}};
+          .roundings = {{"Pa", kCorner * kPressure_Pa, "10 MPa"}}};
 }
 
 }  // namespace sealwatch::laws

@@ -4,7 +4,7 @@ namespace sealwatch::laws {
 
 // q = k_0 (p_1 - p_2) / (1 + |omega / omega_k|^m): m = 1 is the law of speed_dependent_pump_slip_falling.cpp.
 static LawOutput evaluate_speed_dependent_pump_slip_fading(const LawInput& in) {
-  const LawScalar speed = even_power(in.signal[1] / in.parameter[1], 1.0, in.parameter[2], kCorner);
+  const LawScalar speed = even_power(in.signal[1] / in.parameter[1], in.parameter[2], kCorner);
   return {.contribution = in.parameter[0] * in.signal[0] / (1.0 + speed), .rate = {}};
 }
 

@@ -4,8 +4,7 @@ namespace sealwatch::laws {
 
 // q = G_w (p_1 - p_2) |omega / 100 rad/s|^b_w
 static LawOutput evaluate_speed_dependent_pump_slip_power(const LawInput& in) {
-  return {.contribution = in.parameter[0] * in.signal[0] *
-                          even_power(in.signal[1], kShaftSpeed_rad_s, in.parameter[1], in.rounding[0]),
+  return {.contribution = in.parameter[0] * in.signal[0] * even_power(in.signal[1], in.parameter[1], in.rounding[0]),
           .rate = {}};
 }
 
@@ -22,7 +21,7 @@ Law speed_dependent_pump_slip_power() {
                                   {.usual = 2e-14, .significant = 8e-15, .max = 1e-10}),
                          exponent("b_w", {2.0, 0.5, -0.5}, -1.0, 4.0)},
           .evaluate = &evaluate_speed_dependent_pump_slip_power,
-          .roundings = {{"rad/s", kCorner * kShaftSpeed_rad_s}}};
+          .roundings = {{"rad/s", kCorner * kShaftSpeed_rad_s, "100 rad/s"}}};
 }
 
 }  // namespace sealwatch::laws

@@ -4,8 +4,7 @@ namespace sealwatch::laws {
 
 // F = F_x sgn(x) |x / 50 mm|^a_x
 static LawOutput evaluate_spring_load_power(const LawInput& in) {
-  return {.contribution = in.parameter[0] * signed_power(in.signal[1], kPosition_m, in.parameter[1], in.rounding[0]),
-          .rate = {}};
+  return {.contribution = in.parameter[0] * signed_power(in.signal[1], in.parameter[1], in.rounding[0]), .rate = {}};
 }
 
 Law spring_load_power() {
@@ -21,7 +20,7 @@ Law spring_load_power() {
                                   {.usual = 2.5e3, .significant = 1.5e3, .max = 1e6, .either_sign = true}),
                          exponent("a_x", {3.0, 2.0}, 1.2, 7.0)},
           .evaluate = &evaluate_spring_load_power,
-          .roundings = {{"m", kCorner * kPosition_m}}};
+          .roundings = {{"m", kCorner * kPosition_m, "50 mm"}}};
 }
 
 }  // namespace sealwatch::laws

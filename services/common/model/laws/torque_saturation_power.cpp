@@ -4,8 +4,7 @@ namespace sealwatch::laws {
 
 // T = T_i sgn(i) |i / 1 A|^n: torque that the iron does not give any more.
 static LawOutput evaluate_torque_saturation_power(const LawInput& in) {
-  return {.contribution = in.parameter[0] * signed_power(in.signal[2], kCurrent_A, in.parameter[1], in.rounding[0]),
-          .rate = {}};
+  return {.contribution = in.parameter[0] * signed_power(in.signal[2], in.parameter[1], in.rounding[0]), .rate = {}};
 }
 
 Law torque_saturation_power() {
@@ -20,7 +19,7 @@ Law torque_saturation_power() {
           .parameters = {strength("T_i", "N m", "torque lost at 1 A", {.usual = 4e-4, .significant = 8e-5, .max = 0.1}),
                          exponent("n", {2.0, 4.0}, 1.2, 8.0)},
           .evaluate = &evaluate_torque_saturation_power,
-          .roundings = {{"A", kCorner * kCurrent_A}}};
+          .roundings = {{"A", kCorner * kCurrent_A, "1 A"}}};
 }
 
 }  // namespace sealwatch::laws

@@ -4,8 +4,7 @@ namespace sealwatch::laws {
 
 // V = g_u u |u / 10 V|^a_u
 static LawOutput evaluate_unlisted_command_power(const LawInput& in) {
-  return {.contribution =
-              in.parameter[0] * in.signal[1] * even_power(in.signal[1], kCommand_V, in.parameter[1], in.rounding[0]),
+  return {.contribution = in.parameter[0] * in.signal[1] * even_power(in.signal[1], in.parameter[1], in.rounding[0]),
           .rate = {}};
 }
 
@@ -22,7 +21,7 @@ Law unlisted_command_power() {
                                   {.usual = 0.02, .significant = 3e-3, .max = 0.9}),
                          exponent("a_u", {1.0, 2.0, 0.0}, -0.5, 4.0)},
           .evaluate = &evaluate_unlisted_command_power,
-          .roundings = {{"V", kCorner * kCommand_V}}};
+          .roundings = {{"V", kCorner * kCommand_V, "10 V"}}};
 }
 
 }  // namespace sealwatch::laws

@@ -4,8 +4,7 @@ namespace sealwatch::laws {
 
 // q = q_s sgn(D) |D / 10 MPa|^a_s, D = p_A - p_B
 static LawOutput evaluate_unlisted_leakage_power(const LawInput& in) {
-  return {.contribution = in.parameter[0] * signed_power(in.signal[0], kPressure_Pa, in.parameter[1], in.rounding[0]),
-          .rate = {}};
+  return {.contribution = in.parameter[0] * signed_power(in.signal[0], in.parameter[1], in.rounding[0]), .rate = {}};
 }
 
 Law unlisted_leakage_power() {
@@ -20,7 +19,7 @@ Law unlisted_leakage_power() {
           .parameters = {strength("q_s", "m3/s", "flow at 10 MPa", {.usual = 3e-7, .significant = 8e-8, .max = 1e-4}),
                          exponent("a_s", {1.5, 2.0, 3.0}, 0.2, 5.0)},
           .evaluate = &evaluate_unlisted_leakage_power,
-          .roundings = {{"Pa", kCorner * kPressure_Pa}}};
+          .roundings = {{"Pa", kCorner * kPressure_Pa, "10 MPa"}}};
 }
 
 }  // namespace sealwatch::laws

@@ -4,8 +4,7 @@ namespace sealwatch::laws {
 
 // q = G_v (p_A - p_B) |v / 1 mm/s|^b_v
 static LawOutput evaluate_unlisted_moving_leakage(const LawInput& in) {
-  return {.contribution =
-              in.parameter[0] * in.signal[0] * even_power(in.signal[1], kSpeed_m_s, in.parameter[1], in.rounding[0]),
+  return {.contribution = in.parameter[0] * in.signal[0] * even_power(in.signal[1], in.parameter[1], in.rounding[0]),
           .rate = {}};
 }
 
@@ -22,7 +21,7 @@ Law unlisted_moving_leakage() {
                                   {.usual = 3e-14, .significant = 8e-15, .max = 1e-11}),
                          exponent("b_v", {1.0, 2.0, 0.5}, 0.1, 4.0)},
           .evaluate = &evaluate_unlisted_moving_leakage,
-          .roundings = {{"m/s", kCorner * kSpeed_m_s}}};
+          .roundings = {{"m/s", kCorner * kSpeed_m_s, "1 mm/s"}}};
 }
 
 }  // namespace sealwatch::laws

@@ -4,8 +4,7 @@ namespace sealwatch::laws {
 
 // F = c_x v |x / 50 mm|^b_x
 static LawOutput evaluate_unlisted_position_drag(const LawInput& in) {
-  return {.contribution =
-              in.parameter[0] * in.signal[0] * even_power(in.signal[1], kPosition_m, in.parameter[1], in.rounding[0]),
+  return {.contribution = in.parameter[0] * in.signal[0] * even_power(in.signal[1], in.parameter[1], in.rounding[0]),
           .rate = {}};
 }
 
@@ -22,7 +21,7 @@ Law unlisted_position_drag() {
       .parameters = {strength("c_x", "N s/m", "friction at 50 mm", {.usual = 1e6, .significant = 4.5e5, .max = 1e8}),
                      exponent("b_x", {4.0, -2.0}, -3.0, 8.0)},
       .evaluate = &evaluate_unlisted_position_drag,
-      .roundings = {{"m", kCorner * kPosition_m}}};
+      .roundings = {{"m", kCorner * kPosition_m, "50 mm"}}};
 }
 
 }  // namespace sealwatch::laws

@@ -4,8 +4,7 @@ namespace sealwatch::laws {
 
 // V = R_i i |i / 1 A|^a_i
 static LawOutput evaluate_unlisted_resistance_power(const LawInput& in) {
-  return {.contribution =
-              in.parameter[0] * in.signal[0] * even_power(in.signal[0], kCurrent_A, in.parameter[1], in.rounding[0]),
+  return {.contribution = in.parameter[0] * in.signal[0] * even_power(in.signal[0], in.parameter[1], in.rounding[0]),
           .rate = {}};
 }
 
@@ -22,7 +21,7 @@ Law unlisted_resistance_power() {
       .parameters = {strength("R_i", "ohm", "resistance at 1 A", {.usual = 0.05, .significant = 0.012, .max = 10.0}),
                      exponent("a_i", {1.0, 2.0, -0.5}, -0.9, 4.0)},
       .evaluate = &evaluate_unlisted_resistance_power,
-      .roundings = {{"A", kCorner * kCurrent_A}}};
+      .roundings = {{"A", kCorner * kCurrent_A, "1 A"}}};
 }
 
 }  // namespace sealwatch::laws

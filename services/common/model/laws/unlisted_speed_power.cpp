@@ -4,8 +4,7 @@ namespace sealwatch::laws {
 
 // F = k_v sgn(v) |v / 1 mm/s|^a_v
 static LawOutput evaluate_unlisted_speed_power(const LawInput& in) {
-  return {.contribution = in.parameter[0] * signed_power(in.signal[0], kSpeed_m_s, in.parameter[1], in.rounding[0]),
-          .rate = {}};
+  return {.contribution = in.parameter[0] * signed_power(in.signal[0], in.parameter[1], in.rounding[0]), .rate = {}};
 }
 
 Law unlisted_speed_power() {
@@ -20,7 +19,7 @@ Law unlisted_speed_power() {
           .parameters = {strength("k_v", "N", "force at 1 mm/s", {.usual = 1e3, .significant = 400.0, .max = 1e5}),
                          exponent("a_v", {1.5, 0.5, 3.0}, 0.2, 5.0)},
           .evaluate = &evaluate_unlisted_speed_power,
-          .roundings = {{"m/s", kCorner * kSpeed_m_s}}};
+          .roundings = {{"m/s", kCorner * kSpeed_m_s, "1 mm/s"}}};
 }
 
 }  // namespace sealwatch::laws

@@ -4,9 +4,7 @@ namespace sealwatch::laws {
 
 // T = T_w sgn(omega) |omega / 100 rad/s|^a_w
 static LawOutput evaluate_unlisted_torque_power(const LawInput& in) {
-  return {
-      .contribution = in.parameter[0] * signed_power(in.signal[0], kShaftSpeed_rad_s, in.parameter[1], in.rounding[0]),
-      .rate = {}};
+  return {.contribution = in.parameter[0] * signed_power(in.signal[0], in.parameter[1], in.rounding[0]), .rate = {}};
 }
 
 Law unlisted_torque_power() {
@@ -22,7 +20,7 @@ Law unlisted_torque_power() {
       .parameters = {strength("T_w", "N m", "torque at 100 rad/s", {.usual = 0.01, .significant = 2e-3, .max = 5.0}),
                      exponent("a_w", {2.0, 0.5, 3.0}, 0.2, 5.0)},
       .evaluate = &evaluate_unlisted_torque_power,
-      .roundings = {{"rad/s", kCorner * kShaftSpeed_rad_s}}};
+      .roundings = {{"rad/s", kCorner * kShaftSpeed_rad_s, "100 rad/s"}}};
 }
 
 }  // namespace sealwatch::laws

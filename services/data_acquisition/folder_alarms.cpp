@@ -34,7 +34,7 @@ std::string text_of(const fs::path& file) {
   stream.read(text.data(), text.size());
   std::string read(text.data(), static_cast<std::size_t>(stream.gcount()));
   while (read.ends_with('\n')) read.pop_back();
-  return visible(read, false);
+  return read.empty() ? "its reason could not be written beside it: see the log" : visible(read, false);
 }
 
 }  // namespace

@@ -5,6 +5,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <string_view>
+#include <system_error>
+
+#include "services/data_acquisition/folder_alarms.hpp"
 
 namespace sealwatch {
 namespace {
@@ -12,21 +16,26 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMostOfOneName = 10'000;
+/// Of a file system's longest name, without what a reason beside it needs.
+constexpr std::size_t kLongestName = 255 - std::string_view(kReasonSuffix).size();
 
 Error error_of(const fs::path& file, std::string rule, std::string advice) {
   return {.file = file.string(), .place = {}, .value = {}, .rule = std::move(rule), .advice = std::move(advice)};
 }
 
+/// What cannot be looked at may be there, but under a name too long for any file (a recording's may have no room for a
+/// sidecar's) nothing is.
 bool is_there(const fs::path& file) {
-  std::error_code ignored;
-  return fs::symlink_status(file, ignored).type() != fs::file_type::not_found;
+  std::error_code error;
+  const bool is_missing = fs::symlink_status(file, error).type() == fs::file_type::not_found;
+  return !is_missing && error != std::errc::filename_too_long;
 }
 
 fs::path sidecar_of(fs::path recording) { return recording.replace_extension(".yaml"); }
 
 fs::path numbered(const fs::path& name, int count) {
-  if (count == 1) return name;
-  return name.stem().string() + "." + std::to_string(count) + name.extension().string();
+  const std::string end = (count == 1 ? "" : "." + std::to_string(count)) + name.extension().string();
+  return name.stem().string().substr(0, kLongestName - end.size()) + end;
 }
 
 /// Zero, or errno. Not every file system can rename without replacing; then what is_there saw must do.

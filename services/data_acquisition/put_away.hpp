@@ -14,7 +14,8 @@ namespace sealwatch {
 [[nodiscard]] std::optional<Error> not_a_file_of_its_own(const std::filesystem::path& recording);
 
 /// Moves `recording`, then its sidecar, to `folder` beside it, which is made if need be and must be no symbolic link.
-/// Where the name is taken, both become NAME.2, NAME.3, ... Returns where the recording is now.
+/// Where the name is taken, both become NAME.2, NAME.3, ...; of one too long for a reason beside it the end is cut.
+/// Returns where the recording is now.
 [[nodiscard]] Result<std::filesystem::path> put_away(const std::filesystem::path& recording, const std::string& folder);
 
 /// Writes a new file; never through a link or over one that is there.

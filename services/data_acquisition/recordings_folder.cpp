@@ -20,9 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of a file system's longest name.
-constexpr std::size_t kLongestName = 255;
-
 std::int64_t now_ns() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
@@ -32,11 +29,6 @@ std::int64_t now_ns() {
 std::uintmax_t number_of(const fs::path& file) {
   struct stat found {};
   return ::stat(file.c_str(), &found) == 0 ? found.st_ino : 0;
-}
-
-fs::path reason_beside(const fs::path& recording) {
-  const std::string name = recording.filename().string();
-  return recording.parent_path() / (name.substr(0, kLongestName - std::string(kReasonSuffix).size()) + kReasonSuffix);
 }
 
 }  // namespace
@@ -60,7 +52,7 @@ RecordingsFolder::RecordingsFolder(fs::path directory, std::vector<AssetConfig> 
 }
 
 void RecordingsFolder::look() {
-  put_away_concluded();
+  put_away_finished();
   old_.look(directory_, std::chrono::system_clock::now(), std::chrono::steady_clock::now());
   rejected_.look(directory_);
   const std::vector<fs::path> there = recordings();
@@ -70,7 +62,11 @@ void RecordingsFolder::look() {
     const bool settled = is_settled(path);
     File& file = files_[path];
     // Refused after it was read (its start time lay in the future), and mended since: another recording.
-    if (file.taken && file.unchanged_looks == 0) file.taken = file.stuck = false;
+    if (file.taken && file.unchanged_looks == 0) {
+      file.taken = false;
+      file.rejected.reset();
+      file.stuck.clear();
+    }
     if (!file.taken && settled) to_read_.push_back(path);
   }
 }
@@ -91,7 +87,7 @@ bool RecordingsFolder::all_taken() const {
 std::vector<RawSamples> RecordingsFolder::awaiting() const {
   std::vector<RawSamples> first_blocks;
   for (const auto& [path, file] : files_)
-    if (file.taken && !file.stuck) first_blocks.push_back(file.first_block);
+    if (file.taken && !file.rejected) first_blocks.push_back(file.first_block);
   return first_blocks;
 }
 
@@ -101,16 +97,14 @@ std::vector<ServiceAlarm> RecordingsFolder::alarms() const {
   std::size_t stuck = 0;
   const File* first = nullptr;
   for (const auto& [path, file] : files_) {
-    if (!file.stuck) continue;
+    if (file.stuck.empty()) continue;
     ++stuck;
     if (first == nullptr || file.stuck_ns < first->stuck_ns) first = &file;
   }
   if (first != nullptr)
-    alarms.push_back(recording_alarm("stuck",
-                                     std::to_string(stuck) + " recordings in " + visible(directory_.string()) +
-                                         " cannot be moved away, and are not looked at again; see the log: let the "
-                                         "service write there, and restart it",
-                                     first->stuck_ns));
+    alarms.push_back(recording_alarm(
+        "stuck", std::to_string(stuck) + " that are read stay in the folder, the first as it " + visible(first->stuck),
+        first->stuck_ns));
   return alarms;
 }
 
@@ -140,15 +134,16 @@ std::vector<fs::path> RecordingsFolder::recordings() {
   return paths;
 }
 
+bool RecordingsFolder::is_finished(const File& file) const {
+  return file.rejected || (file.taken && is_concluded_(file.first_block));
+}
+
 /// What was overwritten since it was read is another recording, whose test nobody has seen: the look that follows finds
 /// it changed, and reads it.
-void RecordingsFolder::put_away_concluded() {
+void RecordingsFolder::put_away_finished() {
   for (auto file = files_.begin(); file != files_.end();) {
-    const bool concluded = file->second.taken && !file->second.stuck && is_concluded_(file->second.first_block) &&
-                           stamp_of(file->first) == file->second.stamp;
-    const bool gone = concluded && move_to("done", file->first);
-    if (concluded && !gone) set_stuck(file->second);
-    file = gone ? files_.erase(file) : std::next(file);
+    const bool is_over = is_finished(file->second) && stamp_of(file->first) == file->second.stamp;
+    file = is_over && move_away(file->first, file->second) ? files_.erase(file) : std::next(file);
   }
 }
 
@@ -228,28 +223,26 @@ Result<Recording> RecordingsFolder::read(const fs::path& path) const {
   return read_recording(path.string(), **plant, asset->channel_map);
 }
 
-std::optional<fs::path> RecordingsFolder::move_to(const std::string& folder, const fs::path& path) {
-  const Result<fs::path> place = put_away(path, folder);
-  if (place) return *place;
-  report_(place.error());
-  return std::nullopt;
-}
-
-void RecordingsFolder::set_stuck(File& file) {
-  file.stuck = true;
-  file.stuck_ns = now_ns();
+bool RecordingsFolder::move_away(const fs::path& path, File& file) {
+  const Result<fs::path> place = put_away(path, file.rejected ? "rejected" : "done");
+  if (!place) {
+    if (file.stuck.empty()) {
+      report_(place.error());
+      file.stuck_ns = now_ns();
+    }
+    file.stuck = place.error().rule + "; " + place.error().advice;
+    return false;
+  }
+  if (file.rejected) write_new(place->string() + kReasonSuffix, visible(file.rejected->describe()) + "\n");
+  return true;
 }
 
 void RecordingsFolder::reject(const fs::path& path, const Error& error) {
   report_(error);
-  const std::optional<fs::path> place = move_to("rejected", path);
-  if (!place) {
-    files_[path].taken = true;
-    set_stuck(files_[path]);
-    return;
-  }
-  files_.erase(path);
-  write_new(reason_beside(*place), visible(error.describe()) + "\n");
+  File& file = files_[path];
+  file.taken = true;
+  file.rejected = error;
+  if (move_away(path, file)) files_.erase(path);
 }
 
 }  // namespace sealwatch

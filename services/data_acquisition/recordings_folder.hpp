@@ -1,10 +1,11 @@
 // The folder where recordings are dropped (ServiceConfig::recordings_directory).
 //
 // A file is read when it and its sidecar have not changed for ten looks, one a second: a copy in progress is left
-// alone, and one that changes while it is read is read again. When its test is concluded it moves to done/, when it cannot be read to rejected/ with the reason beside it as
-// NAME.error.txt (NAME.2 where that name is taken: nothing is overwritten); its sidecar, which must be there when the recording is read, moves along. Until then it stays, and a
-// change of file or sidecar or a restart reads it again: nothing is lost, and what comes twice is taken once, by its
-// message id.
+// alone, and one that changes while it is read is read again. When its test is concluded it moves to done/, when it
+// cannot be read to rejected/ with the reason beside it as NAME.error.txt (NAME.2 where that name is taken: nothing is
+// overwritten); its sidecar, which must be there when the recording is read, moves along. Where it cannot be moved, that
+// is told once and tried again with each look. Until then it stays, and a change of file or sidecar or a restart reads it
+// again: nothing is lost, and what comes twice is taken once, by its message id.
 #pragma once
 
 #include <cstdint>
@@ -59,20 +60,22 @@ class RecordingsFolder {
     std::optional<Stamp> stamp;
     int unchanged_looks = 0;
     bool taken = false;
-    bool stuck = false;  ///< could not be moved away: reported once, then left alone
+    std::optional<Error> rejected;  ///< why it was not taken
+    std::string stuck;              ///< why it could not be moved away when that was last tried; empty: it was not
     std::int64_t stuck_ns = 0;
     RawSamples first_block;  ///< without samples it would not be known again: content_hash is always set
   };
   [[nodiscard]] std::vector<std::filesystem::path> recordings();
-  void put_away_concluded();
+  void put_away_finished();
+  /// Concluded and stored, or rejected.
+  [[nodiscard]] bool is_finished(const File& file) const;
   [[nodiscard]] bool is_settled(const std::filesystem::path& path);
   [[nodiscard]] static std::optional<Stamp> stamp_of(const std::filesystem::path& path);
   [[nodiscard]] std::vector<RawSamples> take(const std::filesystem::path& path);
   [[nodiscard]] Result<std::vector<RawSamples>> blocks(const std::filesystem::path& path) const;
   [[nodiscard]] Result<Recording> read(const std::filesystem::path& path) const;
-  /// Where the recording is now; nothing where it could not be moved, which is reported.
-  std::optional<std::filesystem::path> move_to(const std::string& folder, const std::filesystem::path& path);
-  static void set_stuck(File& file);
+  /// Whether it is gone; what hinders it is reported once.
+  bool move_away(const std::filesystem::path& path, File& file);
   void reject(const std::filesystem::path& path, const Error& error);
 
   std::filesystem::path directory_;

@@ -244,6 +244,51 @@ TEST_F(RecordingsFolderTest, ANameThatCameBeforeOverwritesNothing) {
   EXPECT_THAT(text_of("may.2.csv"), testing::HasSubstr("second"));
 }
 
+/// A file's name may be so long that a sidecar's, a numbered one's or a reason's would be longer than any may be.
+TEST_F(RecordingsFolderTest, TheLongestNamesThereAreAreMovedAwayWithTheirReasons) {
+  DataAcquisition layer(assets_);
+  Watched watched = folder(layer);
+  for (int times = 1; times <= 2; ++times) {
+    std::ofstream(directory_ / (std::string(251, 'x') + ".csv")) << "time[s]\n";
+    for (int looks = 0; looks < 2; ++looks) EXPECT_TRUE(watched.look().empty());
+  }
+  const std::string first = "rejected/" + std::string(241, 'x') + ".csv";
+  const std::string second = "rejected/" + std::string(239, 'x') + ".2.csv";
+  EXPECT_THAT(files(), testing::UnorderedElementsAre(first, first + ".error.txt", second, second + ".error.txt"));
+}
+
+/// A share that was away for a while, or a disk that was full: nobody restarts a service for that.
+TEST_F(RecordingsFolderTest, WhatCouldNotBeMovedAwayIsMovedOnceItCan) {
+  DataAcquisition layer(assets_);
+  Watched watched = folder(layer);
+  drop("april", "XT03-MV2");
+  std::ofstream(directory_ / "broken.csv") << "time[s]\n";
+  for (const char* folder : {"done", "rejected"}) std::ofstream(directory_ / folder) << "in the way of the folder";
+  for (int looks = 0; looks < 4; ++looks)
+    for (const Message& block : watched.look()) (void)layer.receive(block);
+  ASSERT_THAT(watched.folder.alarms(), testing::SizeIs(1));
+  EXPECT_THAT(watched.folder.alarms()[0].text,
+              testing::AllOf(testing::HasSubstr("2 that are read stay"), testing::HasSubstr("it is not a folder")));
+  EXPECT_THAT(errors_, testing::SizeIs(3)) << "why it is rejected, and once of each that it stays";
+  for (const char* folder : {"done", "rejected"}) fs::remove(directory_ / folder);
+  EXPECT_TRUE(watched.look().empty());
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("done/april.csv", "done/april.yaml", "rejected/broken.csv",
+                                                     "rejected/broken.csv.error.txt"));
+  ASSERT_THAT(watched.folder.alarms(), testing::SizeIs(1));
+  EXPECT_EQ(watched.folder.alarms()[0].subject, "broken.csv");
+}
+
+/// There was no room for it, or somebody emptied it.
+TEST_F(RecordingsFolderTest, ARejectedOneWithoutAReasonSaysWhereItIs) {
+  DataAcquisition layer(assets_);
+  Watched watched = folder(layer);
+  fs::create_directories(directory_ / "rejected");
+  std::ofstream(directory_ / "rejected" / "bad.csv.error.txt").close();
+  watched.look();
+  ASSERT_THAT(watched.folder.alarms(), testing::SizeIs(1));
+  EXPECT_THAT(watched.folder.alarms()[0].text, testing::HasSubstr("see the log"));
+}
+
 /// A link could lead the service to read, or to write over, any file that its user may.
 TEST_F(RecordingsFolderTest, LinksAreNotFollowed) {
   const fs::path elsewhere = directory_.string() + "_elsewhere";

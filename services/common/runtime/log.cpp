@@ -4,13 +4,16 @@
 #include <spdlog/sinks/rotating_file_sink.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <sys/stat.h>
 
 #include <atomic>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "sealwatch/core/visible_text.hpp"
 
@@ -59,16 +62,65 @@ std::string quoted(const std::string& given) {
   return text + "\"";
 }
 
-spdlog::sink_ptr file_sink(const LoggingConfig& config, const std::string& service) {
-  std::filesystem::create_directories(config.directory);
-  const std::filesystem::path file = std::filesystem::path(config.directory) / (service + ".log");
-  std::error_code none;
-  if (std::filesystem::is_fifo(file, none))  // to open it would wait for ever for somebody who reads it
-    throw std::runtime_error(file.filename().string() + " is a pipe");
-  return std::make_shared<spdlog::sinks::rotating_file_sink_mt>(file.string(),
-                                                                static_cast<std::size_t>(config.rotate_at_MB * 1e6),
-                                                                static_cast<std::size_t>(config.rotated_files));
+/// In its file system; zero of none.
+ino_t number_of(const std::filesystem::path& file) {
+  struct stat found {};
+  return ::stat(file.c_str(), &found) == 0 ? found.st_ino : 0;
 }
+
+/// What others rename or remove, to keep logs elsewhere or few, is left to them: the next line begins a new file. Who
+/// went on with the old one would write what nobody finds.
+class LogFile final : public spdlog::sinks::sink {
+ public:
+  LogFile(const LoggingConfig& config, const std::string& service)
+      : config_(config), file_(std::filesystem::path(config.directory) / (service + ".log")) {
+    open();
+  }
+  void log(const spdlog::details::log_msg& line) override {
+    const std::lock_guard lock(mutex_);
+    if (number_of(file_) != number_) open_again();
+    sink_->log(line);
+    number_ = number_of(file_);  // a full one was renamed
+  }
+  void flush() override {
+    const std::lock_guard lock(mutex_);
+    sink_->flush();
+  }
+  void set_pattern(const std::string& pattern) override {
+    set_formatter(std::make_unique<spdlog::pattern_formatter>(pattern));
+  }
+  void set_formatter(std::unique_ptr<spdlog::formatter> formatter) override {
+    const std::lock_guard lock(mutex_);
+    formatter_ = std::move(formatter);
+    sink_->set_formatter(formatter_->clone());
+  }
+
+ private:
+  void open() {
+    std::filesystem::create_directories(config_.directory);
+    std::error_code none;
+    if (std::filesystem::is_fifo(file_, none))  // to open it would wait for ever for somebody who reads it
+      throw std::runtime_error(file_.filename().string() + " is a pipe");
+    const auto most_bytes = static_cast<std::size_t>(config_.rotate_at_MB * 1e6);
+    sink_ = std::make_shared<spdlog::sinks::rotating_file_sink_st>(file_.string(), most_bytes,
+                                                                   static_cast<std::size_t>(config_.rotated_files));
+    if (formatter_) sink_->set_formatter(formatter_->clone());
+    number_ = number_of(file_);
+  }
+  void open_again() {
+    try {
+      open();
+    } catch (const std::exception&) {  // tried again with the next line, which goes where the last one went
+    }
+  }
+
+  LoggingConfig config_;
+  std::filesystem::path file_;
+  std::mutex mutex_;
+  std::unique_ptr<spdlog::formatter> formatter_;
+  std::shared_ptr<spdlog::sinks::sink> sink_;
+  ino_t number_ = 0;
+};
 
 /// "<4>" before a line: its priority for systemd's journal (sd-daemon(3)), which takes a line without for information.
 class JournalPriority final : public spdlog::custom_flag_formatter {
@@ -102,7 +154,7 @@ Status start_logging(const LoggingConfig& config, const std::string& service) {
     sinks.front()->set_formatter(format(std::getenv("JOURNAL_STREAM") != nullptr));
     if (!config.directory.empty()) {
       sinks.front()->set_level(spdlog::level::warn);
-      sinks.push_back(file_sink(config, service));
+      sinks.push_back(std::make_shared<LogFile>(config, service));
       sinks.back()->set_formatter(format(false));
     }
     logger() = std::make_shared<spdlog::logger>(service, sinks.begin(), sinks.end());

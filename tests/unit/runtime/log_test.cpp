@@ -114,6 +114,25 @@ TEST_F(LogTest, AFullFileIsRenamedAndTheOldestGoes) {
     EXPECT_LE(std::filesystem::file_size(place_.directory() + "/log/" + name), 1000U) << name;
 }
 
+/// As logrotate does, or whoever clears a directory.
+TEST_F(LogTest, AFileThatOthersRenameReplaceOrRemoveIsBegunAnew) {
+  start();
+  const std::filesystem::path directory = place_.directory() + "/log", file = directory / "state_detection.log";
+  log_event(LogLevel::info, "first");
+  std::filesystem::rename(file, directory / "old.log");
+  log_event(LogLevel::info, "second");
+  ASSERT_EQ(lines().size(), 1U);
+  EXPECT_THAT(lines()[0], MatchesRegex(".*Z info state_detection second"));
+  EXPECT_EQ(lines("old.log").size(), 1U);
+  std::filesystem::rename(file, directory / "older.log");
+  std::ofstream(file).close();
+  log_event(LogLevel::info, "third");
+  EXPECT_EQ(lines().size(), 1U);
+  std::filesystem::remove_all(directory);
+  log_event(LogLevel::info, "fourth");
+  EXPECT_EQ(lines().size(), 1U);
+}
+
 TEST_F(LogTest, SystemdsJournalIsToldThePriority) {
   ::setenv("JOURNAL_STREAM", "8:1", 1);
   start();

@@ -56,9 +56,10 @@ Status Journal::check_kind(const std::string& connection) {
 
 std::string Journal::place_of(const std::string& connection) {
   if (!connection.starts_with(kFile)) return connection;
-  std::error_code none;
-  const fs::path file = fs::weakly_canonical(fs::absolute(file_of(connection)), none);
-  return std::string(kFile).append(file.string());
+  const fs::path file = fs::absolute(file_of(connection));
+  std::error_code error;
+  const fs::path found = fs::weakly_canonical(file, error);
+  return std::string(kFile).append((error ? file.lexically_normal() : found).string());
 }
 
 Status Journal::check(const std::string& connection) {

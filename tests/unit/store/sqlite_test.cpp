@@ -110,6 +110,15 @@ TEST(JournalPlace, IsTheSameHoweverTheFileIsWritten) {
   EXPECT_EQ(Journal::place_of("postgresql://dbname=x"), "postgresql://dbname=x");
 }
 
+/// A link that leads back to itself, as a directory that may not be entered: where its files are cannot be found out.
+TEST(JournalPlace, IsEachFilesOwnInADirectoryThatCannotBeLookedInto) {
+  const Place place;
+  const std::filesystem::path loop = place.directory() / "loop";
+  std::filesystem::create_symlink("loop", loop);
+  EXPECT_NE(Journal::place_of("sqlite3://" + (loop / "a.db").string()),
+            Journal::place_of("sqlite3://" + (loop / "b.db").string()));
+}
+
 TEST(JournalPlace, IsAFileOrNoneYet) {
   const Place place;
   const std::string pipe = "sqlite3://" + (place.directory() / "pipe.db").string();

@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
                      .version_line = version_line(),
                      .make_layer = make_layer,
                      .make_bus = make_dds_bus,
-                     .refused_by_bus = refused_by_security,
+                     .refused_by_bus = refused_by_dds,
                      .keeps_alarms = true,
                      .advice_of_output = advisory_generation::advice_alarm});
 }

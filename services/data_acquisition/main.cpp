@@ -31,5 +31,5 @@ int main(int argc, char** argv) {
                                       const Clock&) { return std::make_unique<DataAcquisition>(configuration.assets); },
                      .make_bus = make_dds_bus,
                      .make_local_inputs = watch_folder,
-                     .refused_by_bus = refused_by_security});
+                     .refused_by_bus = refused_by_dds});
 }

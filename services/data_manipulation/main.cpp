@@ -18,6 +18,6 @@ int main(int argc, char** argv) {
        .make_layer = [](const Configuration& configuration,
                         const Clock&) { return std::make_unique<DataManipulation>(configuration.assets); },
        .make_bus = make_dds_bus,
-       .refused_by_bus = refused_by_security,
+       .refused_by_bus = refused_by_dds,
        .make_alarms_of_output = make_alarms});
 }

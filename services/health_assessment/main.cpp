@@ -17,5 +17,5 @@ int main(int argc, char** argv) {
                      .version_line = version_line(),
                      .make_layer = make_layer,
                      .make_bus = make_dds_bus,
-                     .refused_by_bus = refused_by_security});
+                     .refused_by_bus = refused_by_dds});
 }

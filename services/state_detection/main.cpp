@@ -21,6 +21,6 @@ int main(int argc, char** argv) {
                      .version_line = version_line(),
                      .make_layer = make_layer,
                      .make_bus = make_dds_bus,
-                     .refused_by_bus = refused_by_security,
+                     .refused_by_bus = refused_by_dds,
                      .make_alarms_of_output = make_alarms});
 }

@@ -53,6 +53,8 @@ LayerRunner::LayerRunner(const LayerMaker& make_layer, Bus& bus, Bus& heartbeat_
 }
 
 Status LayerRunner::start() {
+  // While this process joined, DDS refused whoever came before there was anything to compare them with.
+  if (options_.refused_by_bus) (void)options_.refused_by_bus();
   // Subscribed first: what comes while the past is restored waits on the bus.
   if (Status status = bus_.subscribe_service_topics(); !status) return status;
   if (Status status = bus_.subscribe(inputs_); !status) return status;
@@ -70,9 +72,6 @@ Status LayerRunner::start() {
   reader_ = std::make_unique<StreamReader>(journal_.writer_id(), streams, options_.streams);
   // Nothing is missing yet; from now on it knows the time, by which it forgets whom it does not hear.
   (void)reader_->requests(std::chrono::duration<double>(steady_clock::now().time_since_epoch()).count());
-
-  // While this process joined, DDS refused whoever came before there was anything to compare them with.
-  if (options_.refused_by_bus) (void)options_.refused_by_bus();
 
   if (Status status = lanes_.prepare(); !status) return status;
   for (const std::string& asset_id : options_.assets) lanes_.know(asset_id);

@@ -66,6 +66,23 @@ Qos reader_qos(const TopicQos& settings, SlowReader slow_reader, std::int32_t li
 
 void announce(dds_entity_t reader, void* channel) { static_cast<Channel*>(channel)->arrived(reader); }
 
+std::string policy_of(std::uint32_t id) {
+  if (id == DDS_DURABILITY_QOS_POLICY_ID) return "durability";
+  if (id == DDS_RELIABILITY_QOS_POLICY_ID) return "reliability";
+  if (id == DDS_OWNERSHIP_QOS_POLICY_ID) return "ownership";
+  if (id == DDS_DATA_REPRESENTATION_QOS_POLICY_ID) return "data representation";
+  return "policy " + std::to_string(id);
+}
+
+/// Neither side would notice: the writer waits for readers, or writes for nobody.
+void tell_unheard(dds_entity_t reader, dds_requested_incompatible_qos_status_t status, void* /*unused*/) {
+  std::array<char, 256> name{};
+  (void)dds_get_name(dds_get_topic(reader), name.data(), name.size());
+  note_refusal("topic " + std::string(name.data()) + ": nothing of a writer is received whose " +
+               policy_of(status.last_policy_id) +
+               " is not that of the services; give it the quality of service of docs/topics.md");
+}
+
 }  // namespace
 
 bool is_retraction(const Message& message) {
@@ -95,6 +112,7 @@ Status Channel::subscribe(Inbox& inbox) {
   const std::unique_ptr<dds_listener_t, decltype(&dds_delete_listener)> listener(dds_create_listener(this),
                                                                                  &dds_delete_listener);
   dds_lset_data_available(listener.get(), announce);
+  dds_lset_requested_incompatible_qos(listener.get(), tell_unheard);
   const dds_entity_t reader = dds_create_reader(
       participant_, topic_, reader_qos(qos_, slow_reader_, type_->reader_limit).get(), listener.get());
   if (reader < 0) return dds_failure("reader of topic " + type_->name, reader);

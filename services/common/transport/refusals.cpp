@@ -64,7 +64,7 @@ void listen_to_cyclone() {
 
 }  // namespace transport
 
-std::optional<std::string> refused_by_security() {
+std::optional<std::string> refused_by_dds() {
   Refusals& known = refusals();
   const std::lock_guard lock(known.mutex);
   if (known.count == 0) return std::nullopt;

@@ -12,7 +12,7 @@ void listen_to_cyclone();
 /// Whether a line of Cyclone's says that somebody else was refused.
 [[nodiscard]] bool tells_a_refusal(std::string_view line);
 
-/// It is told once, as an alarm (refused_by_security).
+/// It is told once, as an alarm (refused_by_dds).
 void note_refusal(const std::string& words);
 
 }  // namespace sealwatch::transport

@@ -251,6 +251,25 @@ TEST(Qos, AVolatileTopicGivesALateSubscriberNothing) {
   EXPECT_TRUE(late->receive(kQuiet).empty());
 }
 
+/// As a control system with the durability that DDS gives by default: its samples would be missed by nobody.
+TEST(Qos, AWriterThatOffersLessThanIsAskedForIsToldOf) {
+  Configuration configuration = isolated_configuration(1);
+  auto service = open(configuration);
+  ASSERT_TRUE(service->subscribe(kAdvisory));
+  auto heard = open(configuration);
+  ASSERT_TRUE(heard->announce(kAdvisory));
+  ASSERT_TRUE(heard->wait_for_subscribers(Topic::advisory, 1, kPatience));
+  EXPECT_EQ(refused_by_dds(), std::nullopt);
+  configuration.topics["advisory"].transient_local = false;
+  auto unheard = open(configuration);
+  ASSERT_TRUE(unheard->announce(kAdvisory));
+  std::optional<std::string> refused;
+  for (const auto end = Clock::now() + kPatience; !refused && Clock::now() < end; refused = refused_by_dds())
+    std::this_thread::sleep_for(milliseconds(10));
+  EXPECT_THAT(refused.value_or(""), testing::HasSubstr("sealwatch/advisory"));
+  EXPECT_THAT(refused.value_or(""), testing::HasSubstr("durability"));
+}
+
 TEST(Qos, AStateTopicKeepsTheLastOfEveryAsset) {
   Configuration configuration = isolated_configuration(1);
   configuration.topics["advisory"].keep_all = false;

@@ -84,12 +84,12 @@ std::vector<std::string> taken(const Configuration& configuration, Rights rights
 
 TEST(RightToRetract, IsOfATopicOfItsOwnWhereThereAreRights) {
   const Configuration configuration = isolated_configuration(0);
-  (void)refused_by_security();
+  (void)refused_by_dds();
   EXPECT_THAT(taken(configuration, Rights::none), ElementsAre("1", "3", "4", "5", "6"))
       << "a replacement is no retraction";
-  (void)refused_by_security();
+  (void)refused_by_dds();
   EXPECT_THAT(taken(configuration, Rights::enforced), ElementsAre("1", "4", "6"));
-  EXPECT_THAT(refused_by_security().value_or(""), HasSubstr("needs another right"));
+  EXPECT_THAT(refused_by_dds().value_or(""), HasSubstr("needs another right"));
 }
 
 TEST(RightToRetract, HoldsWhereTheSettingsOfCycloneHaveSecurity) {

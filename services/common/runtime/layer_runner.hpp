@@ -227,6 +227,7 @@ class LayerRunner {
   void tell_of_local_inputs();
   void tell_of_floods();
   void tell_of_missing_blocks();
+  void tell_of_missing_messages();
   /// Live tests that change no advice, as one that was played back is of the future.
   void look_for_future_test(const std::string& asset_id);
   void note_unknown_asset(const Message& message, const std::string& refused);

@@ -349,6 +349,28 @@ void LayerRunner::tell_of_missing_blocks() {
   }
 }
 
+/// A service that is deaf to another has no inputs waiting and looks idle. One alarm for each topic: strangers may invent
+/// streams.
+void LayerRunner::tell_of_missing_messages() {
+  for (const Topic topic : inputs_) {
+    const std::string name(name_of(topic));
+    const auto missing = reader_->missing_of_services(name);
+    const auto gap = std::ranges::find_if(missing, [this](const auto& one) { return strangers_.knows(one.writer_id); });
+    if (gap == missing.end()) continue;
+    const std::string text = "messages " + std::to_string(gap->first) + " to " + std::to_string(gap->last) + " of " +
+                             gap->writer_id + " do not come, though it runs and is asked for them: give all services " +
+                             "the same topics: in their configuration, restart them, and look at the network";
+    const bool is_new = alarms_.raise({.kind = kMissingBlocks,
+                                       .asset_id = {},
+                                       .subject = name,
+                                       .pst_id = {},
+                                       .text = text,
+                                       .since_ns = clock_.now().nanoseconds},
+                                      steady_now() + kBlocksCame);
+    if (is_new) log_event(LogLevel::error, "messages are missing", {{"topic", name}, {"error", text}});
+  }
+}
+
 /// What comes a moment later is no news to anybody.
 void LayerRunner::tell_of_waiting(const std::string& asset_id, const Layer& layer) {
   const std::vector<Refusal> waiting = layer.waiting();
@@ -378,6 +400,7 @@ void LayerRunner::tell_of_waiting(const std::string& asset_id, const Layer& laye
 void LayerRunner::look_for_trouble() {
   tell_of_floods();
   tell_of_missing_blocks();
+  tell_of_missing_messages();
   look_at_clock();
   for (RefusedTest& one : refused_tests_)  // refused while this machine's clock was ahead
     one.last = std::min(one.last, clock_.now());

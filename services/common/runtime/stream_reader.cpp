@@ -5,6 +5,12 @@
 #include "services/common/runtime/stream_window.hpp"
 
 namespace sealwatch {
+namespace {
+
+/// One that goes on beats once a second, or repeats what is not confirmed every 3 s.
+constexpr double kSilent_s = 10.0;
+
+}  // namespace
 
 StreamReader::StreamReader(std::string name, const std::vector<StreamPosition>& positions)
     : StreamReader(std::move(name), positions, Limits()) {}
@@ -191,9 +197,10 @@ bool StreamReader::is_due(Stream& stream, double now_s) const {
   return now_s - stream.waiting_since_s >= stream.wait_s;
 }
 
-/// A word on how far a stream goes that comes and goes is waited for no longer than one that stays.
+/// A word on how far a stream goes that comes and goes is waited for no longer than one that stays. Whoever was stopped,
+/// or read its past, did not wait: what came meanwhile is still to be taken from the bus.
 void StreamReader::note_waiting(double now_s) {
-  const double since_last_s = looked_s_ ? now_s - *looked_s_ : 0.0;
+  const double since_last_s = looked_s_ ? std::min(now_s - *looked_s_, limits_.longest_look_s) : 0.0;
   looked_s_ = now_s;
   bool waits_for_unread = false;
   for (auto& [key, stream] : streams_) {
@@ -267,13 +274,21 @@ bool StreamReader::is_behind_on(std::string_view topic) const {
                              [&](const auto& entry) { return entry.first.first == topic && is_behind(entry.second); });
 }
 
+std::vector<StreamReader::Missing> StreamReader::missing_of_services(std::string_view topic) const {
+  std::vector<Missing> missing;
+  for (const auto& [key, stream] : streams_)
+    if (key.first == topic && is_of_a_service(topic) && is_given_up(stream) && stream.end() > stream.position &&
+        now_s_ - stream.heard_s.value_or(-kSilent_s) < kSilent_s)
+      missing.push_back({key.second, stream.position + 1, stream.end()});
+  return missing;
+}
+
 std::vector<StreamReader::Missing> StreamReader::missing_of_senders() const {
-  constexpr double kSenderIsSilent_s = 10.0;  // one that goes on repeats what is not confirmed every 3 s
   std::vector<Missing> missing;
   for (const auto& [key, stream] : streams_) {
     const std::uint64_t next = stream.held.empty() ? stream.beyond : stream.held.begin()->first;
     if (!is_of_a_service(key.first) && is_given_up(stream) && next > 0 &&
-        now_s_ - stream.heard_s.value_or(0.0) < kSenderIsSilent_s)
+        now_s_ - stream.heard_s.value_or(0.0) < kSilent_s)
       missing.push_back({key.second, stream.position + 1, next - 1});
   }
   return missing;

@@ -37,14 +37,15 @@ class StreamReader {
     double patience_s = 0.3;
     double retry_s = 1.0;
     double longest_retry_s = 16.0;
-    double set_back_s = 5.0;     ///< a writer that stays behind what was read of it for so long lost its journal's end
-    double given_up_s = 60.0;    ///< a stream that has not moved for so long is not waited for
-    double forgotten_s = 600.0;  ///< a writer that was not heard for so long is not spoken of
-    double reread_s = 60.0;      ///< between two times that a stream is read from its start
-    std::size_t streams = 4096;  ///< known at once: strangers' words about more are passed over
-    std::size_t requests = 64;   ///< at a time
-    double start_s = 1.0;        ///< between two starts of a writer for which what was read last is asked for
-    bool compares = true;        ///< whether its owner compares ids: note_known, read_again
+    double set_back_s = 5.0;      ///< a writer that stays behind what was read of it for so long lost its journal's end
+    double given_up_s = 60.0;     ///< a stream that has not moved for so long is not waited for
+    double forgotten_s = 600.0;   ///< a writer that was not heard for so long is not spoken of
+    double longest_look_s = 2.0;  ///< of the time between two looks at what is missing, so much counts as waiting
+    double reread_s = 60.0;       ///< between two times that a stream is read from its start
+    std::size_t streams = 4096;   ///< known at once: strangers' words about more are passed over
+    std::size_t requests = 64;    ///< at a time
+    double start_s = 1.0;         ///< between two starts of a writer for which what was read last is asked for
+    bool compares = true;         ///< whether its owner compares ids: note_known, read_again
   };
   using Key = std::pair<std::string, std::string>;  // topic, writer id
 
@@ -74,12 +75,15 @@ class StreamReader {
   [[nodiscard]] bool is_behind() const;
   /// Whether any of the topic is.
   [[nodiscard]] bool is_behind_on(std::string_view topic) const;
-  /// A sender's blocks that it was asked for in vain, while later ones of it wait.
+  /// What a writer that is heard was asked for in vain.
   struct Missing {
     std::string writer_id;
     std::uint64_t first = 0, last = 0;
   };
+  /// Of senders: blocks before others of theirs that wait.
   [[nodiscard]] std::vector<Missing> missing_of_senders() const;
+  /// Of services: messages that their heartbeats say they have written.
+  [[nodiscard]] std::vector<Missing> missing_of_services(std::string_view topic) const;
   /// Streams of which something was read and that were heard of lately.
   [[nodiscard]] std::vector<Key> active() const;
 

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <sys/timex.h>
 
+#include <algorithm>
+
 #include "services/common/runtime/stranger_watch.hpp"
 #include "services/common/runtime/system_clock.hpp"
 #include "tests/unit/runtime/harness.hpp"
@@ -314,6 +316,31 @@ TEST_F(TroubleTest, WhatAnUnknownWriterSendsIsRefusedAndOfALateOneNothingIsLost)
   for (const std::uint64_t sequence : {1, 2, 3})
     ASSERT_TRUE(stranger_.publish(features("data_manipulation-1", sequence)));
   EXPECT_TRUE(step_until([&] { return open() == 3; }, [&] { process->step(); }));
+}
+
+/// DDS matches no reader that asks for more than its writer offers, as under topics: that differ.
+TEST_F(TroubleTest, WhatAServiceIsDeafToIsAnAlarmOfItsTopicUntilItComes) {
+  options_.streams.given_up_s = 0.3;
+  const auto process = joiner();
+  ServiceStatus unheard = heartbeat("data_manipulation", "data_manipulation-1");
+  unheard.written = {{"test_features", "data_manipulation-1", 1}, {"state_report", "data_manipulation-1", 0}};
+  ServiceStatus stranger = heartbeat("laptop", "a stranger");
+  stranger.written = {{"test_features", "a stranger", 9}, {"state_report", "a stranger", 9}};
+  ASSERT_TRUE(stranger_.publish(unheard));
+  ASSERT_TRUE(stranger_.publish(stranger));
+  ASSERT_TRUE(says(*process, 2)) << "what a stranger invents is no more than a stranger";
+  const auto missing = std::ranges::find(last_, "missing_blocks", &ServiceAlarm::kind);
+  ASSERT_NE(missing, last_.end());
+  EXPECT_EQ(missing->subject, "test_features");
+  EXPECT_THAT(missing->text, HasSubstr("messages 1 to 1 of data_manipulation-1 do not come"));
+  TestFeatures features;
+  features.asset_id = "A";
+  features.header = header("test_features/T", "T");
+  features.header.writer_id = "data_manipulation-1";
+  features.header.stream_sequence = 1;
+  ASSERT_TRUE(stranger_.publish(Message(features)));
+  ASSERT_TRUE(says(*process, 1));
+  EXPECT_EQ(last_[0].kind, kUnknownWriter);
 }
 
 TEST_F(TroubleTest, WhatASourceSendsThatIsNoSenderIsRefusedAndItsStreamGoesOn) {

@@ -231,6 +231,35 @@ TEST_F(StreamReaderTest, WhatASenderDoesNotAnswerForIsToldWhileLaterBlocksWait) 
   EXPECT_THAT(reader_.missing_of_senders(), IsEmpty()) << "they came";
 }
 
+/// What came while the process was stopped is still on the bus, and so is what its writer beats of.
+TEST_F(StreamReaderTest, AReaderThatWasStoppedForLongHasWaitedForNothing) {
+  note(3, 0.0);
+  EXPECT_THAT(asked(0.0), IsEmpty());
+  note(9, 600.0);
+  EXPECT_THAT(asked(600.0), ElementsAre(3, 9));
+  EXPECT_TRUE(reader_.is_behind()) << "a test would be taken for cut whose blocks wait on the bus";
+  EXPECT_THAT(reader_.missing_of_services("advisory"), IsEmpty());
+}
+
+/// DDS matches no reader that asks for more than its writer offers: of all that one, nothing comes, however it is asked.
+TEST_F(StreamReaderTest, WhatOfAServiceThatBeatsDoesNotComeIsTold) {
+  auto beats_until = [&, now_s = 0.0](double end_s) mutable {
+    for (; now_s < end_s; now_s += 1.0) {
+      (void)reader_.note_written({"sample_block", "data_acquisition-1", 7}, now_s);
+      (void)reader_.requests(now_s);
+    }
+  };
+  beats_until(59.0);
+  EXPECT_THAT(reader_.missing_of_services("sample_block"), IsEmpty());
+  beats_until(63.0);
+  ASSERT_EQ(reader_.missing_of_services("sample_block").size(), 1U);
+  EXPECT_EQ(reader_.missing_of_services("sample_block")[0].writer_id, "data_acquisition-1");
+  EXPECT_EQ(reader_.missing_of_services("sample_block")[0].last, 7U);
+  EXPECT_THAT(reader_.missing_of_services("test_window"), IsEmpty());
+  (void)reader_.requests(90.0);
+  EXPECT_THAT(reader_.missing_of_services("sample_block"), IsEmpty()) << "the service is silent: that is another alarm";
+}
+
 /// So many are missing that not even the later ones are held.
 TEST_F(StreamReaderTest, AGapOfAnySizeIsTold) {
   RawSamples samples;

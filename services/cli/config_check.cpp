@@ -31,11 +31,12 @@ bool may_be_written(const fs::path& directory) {
   return true;
 }
 
-/// State and recordings directories are made by the services: what is needed is a place that may be written.
+/// The services make what is not there: what is needed is a place that may be written. A link that leads nowhere is there.
 Status check_directory(const std::string& directory) {
   fs::path place = fs::absolute(directory);
   std::error_code none;
-  while (!fs::exists(place, none) && place.has_relative_path()) place = place.parent_path();
+  while (fs::symlink_status(place, none).type() == fs::file_type::not_found && place.has_relative_path())
+    place = place.parent_path();
   if (fs::is_directory(place, none) && may_be_written(place)) return {};
   return fail(Error{.file = {},
                     .place = {},
@@ -57,6 +58,8 @@ std::vector<Error> check_surroundings(const std::string& file, const Configurati
   };
   check(check_dds_settings(configuration.cyclonedds_uri), "cyclonedds_uri");
   check(check_directory(configuration.state_directory), "state_directory");
+  if (!configuration.logging.directory.empty())
+    check(check_directory(configuration.logging.directory), "logging.directory");
   for (const auto& [service, config] : configuration.services) {
     const bool by_default =
         config.journal == "sqlite3://" + (fs::path(configuration.state_directory) / (service + ".db")).string();

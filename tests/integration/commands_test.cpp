@@ -593,12 +593,19 @@ TEST_F(Commands, ConfigurationIsCheckedAsAWhole) {
                                HasSubstr("mkdir -p /nowhere/at"), HasSubstr("2 faults found")));
   const std::string unwritable = write("unwritable.yaml",
                                        "state_directory: /proc/x\nassets: []\nservices:\n  data_acquisition:\n    "
-                                       "recordings_directory: /proc/y\n");
+                                       "recordings_directory: /proc/y\nlogging: {directory: /dev/full}\n");
   const Finished proc = run({"sealwatch", "config", "check", "--config", unwritable});
   EXPECT_EQ(proc.status, 2);
   EXPECT_THAT(proc.output, ::testing::AllOf(HasSubstr("line 1, key state_directory: '/proc/x': cannot be made"),
                                             HasSubstr("line 5, key services.data_acquisition.recordings_directory"),
-                                            HasSubstr("2 faults found")));
+                                            HasSubstr("line 6, key logging.directory: '/dev/full': cannot be made"),
+                                            HasSubstr("3 faults found")));
+  std::filesystem::create_symlink("round", folder_ / "round");
+  const Finished round =
+      run({"sealwatch", "config", "check", "--config",
+           write("round.yaml", "assets: []\nstate_directory: " + (folder_ / "round").string() + "\n")});
+  EXPECT_EQ(round.status, 2);
+  EXPECT_THAT(round.output, HasSubstr("round is in the way"));
   const Finished without =
       run({"sealwatch", "config", "check", "--config",
            write("without.yaml", "assets: []\nservices: {state_detection: {enabled: false}}\nstate_directory: " +

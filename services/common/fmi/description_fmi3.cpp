@@ -85,6 +85,12 @@ DeclaredTypes read_types(const DescriptionReader& reader, const pugi::xml_node& 
   return types;
 }
 
+bool has_structural_size(const pugi::xml_node& node) {
+  const auto dimensions = node.children("Dimension");
+  return std::any_of(dimensions.begin(), dimensions.end(),
+                     [](const pugi::xml_node& dimension) { return !!dimension.attribute("valueReference"); });
+}
+
 /// Sizes and derivatives refer to variables that may come later.
 void resolve(const DescriptionReader& reader, const std::vector<pugi::xml_node>& nodes, const Places& places,
              bool settings_change_sizes, ModelDescription& description) {
@@ -93,7 +99,7 @@ void resolve(const DescriptionReader& reader, const std::vector<pugi::xml_node>&
     Variable& variable = description.variables[k];
     read_extents(reader, nodes[k], places, description, variable);
     if ((total += variable.size) > kMostElements) reader.refuse(nodes[k], variable.name, "is one array too many");
-    if (settings_change_sizes && nodes[k].child("Dimension")) variable.start.clear();
+    if (settings_change_sizes && has_structural_size(nodes[k])) variable.start.clear();
     if (variable.start.size() > 1 && variable.start.size() != variable.size)
       reader.refuse(nodes[k], std::to_string(variable.start.size()) + " values",
                     "start must have a value for each of the " + std::to_string(variable.size) + " elements");

@@ -13,8 +13,6 @@
 namespace sealwatch::fmi {
 namespace {
 
-bool is_number(FmiType type) { return type != FmiType::string && type != FmiType::binary && type != FmiType::clock; }
-
 /// An ELF file of 64 bits for x86-64, by its first bytes (System V ABI, ELF header).
 std::string fault_of_binary(const std::filesystem::path& file) {
   std::array<char, 20> header{};
@@ -70,6 +68,8 @@ bool can_be_set(const Variable& variable) {
 }
 
 }  // namespace
+
+bool is_number(FmiType type) { return type != FmiType::string && type != FmiType::binary && type != FmiType::clock; }
 
 bool changes_between_events(const Variable& variable) {
   return variable.variability == FmiVariability::continuous &&

@@ -23,6 +23,7 @@ enum class Choice { model_exchange_first, model_exchange, co_simulation };
 /// Before a setting's name: the place of an Error that is its fault.
 inline constexpr const char* kSettingPlace = "setting ";
 
+[[nodiscard]] bool is_number(FmiType type);
 /// Whether a variable may change between events.
 [[nodiscard]] bool changes_between_events(const Variable& variable);
 

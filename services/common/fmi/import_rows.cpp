@@ -19,8 +19,6 @@ ImportRow row_of(const ModelDescription& fmu, const Element& element) {
   return row;
 }
 
-bool is_number(FmiType type) { return type != FmiType::string && type != FmiType::binary && type != FmiType::clock; }
-
 bool is_alias(const ModelDescription& fmu, const Element& output, const Element& state) {
   const Variable& variable = fmu.variables[output.variable];
   return fmu.variables[state.variable].reference == variable.reference && state.element == output.element &&

@@ -264,6 +264,28 @@ TestUnit arrays() {
   return unit;
 }
 
+TestUnit types() {
+  TestUnit unit{.binary = "fmu_types3", .variables = {}, .structure = {}, .interfaces = {}, .version = {}};
+  const auto row = [](const std::string& type, const std::string& name, int reference, const std::string& attributes,
+                      const std::string& dimension = "") {
+    return "<" + type + " name=\"" + name + "\" valueReference=\"" + std::to_string(reference) + "\" " + attributes +
+           (dimension.empty() ? "/>\n" : "><Dimension " + dimension + "/></" + type + ">\n");
+  };
+  const std::string parameter = "causality=\"parameter\" variability=\"fixed\" start=",
+                    input = "causality=\"input\" start=\"0\"", of_n = "valueReference=\"1\"", two = "start=\"2\"";
+  unit.variables =
+      row("UInt64", "n", 1, "causality=\"structuralParameter\" variability=\"fixed\" start=\"2\"") +
+      row("Float64", "x", 2, "start=\"0 0\"", of_n) + row("Float64", "der(x)", 3, "derivative=\"2\"", of_n) +
+      row("Float32", "w", 4, parameter + "\"1 2\"", of_n) + row("Int8", "divisor", 5, parameter + "\"1\"") +
+      row("Float32", "u", 6, input) + row("Int64", "s", 7, input) + row("Enumeration", "e", 8, input) +
+      row("UInt16", "counts", 9, "causality=\"input\" start=\"0 0\"", two) +
+      row("Boolean", "flags", 24, parameter + "\"false false\"", two) +
+      row("Float32", "low", 20, "causality=\"output\"") + row("Float64", "y", 21, "causality=\"output\"") +
+      row("UInt8", "y_byte", 22, "causality=\"output\"") + row("Enumeration", "y_item", 23, "causality=\"output\"");
+  unit.structure = "<Output valueReference=\"21\"/><ContinuousStateDerivative valueReference=\"3\"/>\n";
+  return unit;
+}
+
 TestUnit masses() {
   TestUnit unit{.binary = "fmu_masses3", .variables = {}, .structure = {}, .interfaces = {}, .version = {}};
   const auto array = [](const std::string& name, int reference, const std::string& attributes, int size) {

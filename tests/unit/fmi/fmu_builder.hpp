@@ -46,6 +46,8 @@ struct TestUnit {
 [[nodiscard]] TestUnit mixed(const std::string& binary);
 /// Arrays whose size is a structural parameter.
 [[nodiscard]] TestUnit arrays();
+/// Numbers of all types that FMI 3.0 has, alone and in arrays; one of them sizes the others.
+[[nodiscard]] TestUnit types();
 /// Two masses whose states, parameters, inputs and outputs are arrays.
 [[nodiscard]] TestUnit masses();
 

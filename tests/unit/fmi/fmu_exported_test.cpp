@@ -489,9 +489,54 @@ parameters:
   k: {value: 2.0, unit: "1"}
 )yaml"),
               AllOf(HasSubstr("model.fmu"), HasSubstr("Co-Simulation"), HasSubstr("no law can be added")));
-  TestUnit wide = mixed("fmu_mixed3");
-  wide.variables.replace(wide.variables.find("<Int32 name=\"u_integer\""), 6, "<Int64");
-  EXPECT_THAT(refusal(wide, typed_plant()), AllOf(HasSubstr("u_integer"), HasSubstr("int64")));
+}
+
+// With more elements than the description has, whose starts the binary alone knows.
+TEST(ExplainedFmu, OfFmi3sOtherTypesAndAStructureThatIsSetIsHandedBack) {
+  const Exported exported(types(), R"yaml(
+meaning: all types of numbers
+fmu:
+  file: model.fmu
+  settings: {n: 3, flags: "true false"}
+  inputs: {u: 2 * u - lost, s: s, e: e, "counts[1]": first, "counts[2]": second}
+  parameters: {divisor: divisor, "w[1]": w_1, "w[2]": 2, "w[3]": 3}
+  variables: {y: {variable: y, unit: "1"}, low: {variable: low, unit: "1"}, byte: {variable: y_byte, unit: "1"},
+              item: {variable: y_item, unit: "1"}}
+inputs:
+  u: {unit: "1"}
+  s: {unit: "1", course: held}
+  e: {unit: "1", course: held}
+  first: {unit: "1", course: held}
+  second: {unit: "1", course: held}
+outputs:
+  y: {value: y, unit: "1"}
+  low: {value: low, unit: "1"}
+  byte: {value: byte, unit: "1"}
+  item: {value: item, unit: "1"}
+parameters:
+  divisor: {value: 1.0, unit: "1"}
+  w_1: {value: 1.0, unit: "1"}
+states:
+  x_1: {variable: "x[1]", unit: "1", start: "0", own: false, size: 1.0}
+  x_2: {variable: "x[2]", unit: "1", start: "0", own: false, size: 1.0}
+  x_3: {variable: "x[3]", unit: "1", start: "0", own: false, size: 1.0}
+elements:
+  inlet:
+    sites:
+      - {kind: own, symbol: lost, unit: "1", signals: {a: {value: u, unit: "1", size: 1.0}}, size: 1.0}
+law_sizes: {1: 1.0}
+)yaml",
+                          [](AssetConfig& asset) {
+                            asset.parameters["divisor"].value = 2.0;
+                            asset.parameters["w_1"].value = 1.5;
+                          });
+  ASSERT_EQ(exported.refusal(), "");
+  EXPECT_THAT(exported.text(), AllOf(HasSubstr("\"x[3]\""), testing::Not(HasSubstr("\"n\""))));
+  for (const char* channel : {"y", "low"}) expect_same(exported, channel, channel, 1e-5);
+  expect_same(exported, "byte", "y_byte", 0.0);
+  expect_same(exported, "item", "y_item", 0.0);
+  EXPECT_NEAR(exported.simulated_again("y", [](double) { return 1.0; })(300, 0),
+              1111.0 + 2.0 * 6.5 * 2.0 * (1.0 - std::exp(-1.5)), 1e-4);
 }
 
 std::string masses_with(const std::string& inputs, const std::string& parameters) {

@@ -34,7 +34,6 @@ class WrapperExporter {
                     std::string(inner.offers_exchange ? "take `interface: me` in its plant file"
                                                       : "export the model for Model Exchange from its tool") +
                         "; laws.c and laws.mo have the laws");
-    if (const auto [fault, advice] = fault_of_types(); !fault.empty()) return refuse(fault, advice);
     auto terms = resolve_physics(plant_.description, plant_.description.sites, asset_);
     if (!terms) return fail(terms.error());
     terms_ = std::move(*terms);
@@ -44,7 +43,7 @@ class WrapperExporter {
     ports_ = std::move(*ports);
     collect();
     for (const std::size_t input : description_.local_inputs)
-      if (kind_of(inner.variables[input]) != std::string_view("kReal"))
+      if (!changes_between_events(inner.variables[input]))
         return refuse(
             "has an input that changes at events alone and shares its channel: " + inner.variables[input].name,
             "give it a channel of its own in the plant file");
@@ -70,41 +69,6 @@ class WrapperExporter {
                       .value = plant_.description.name,
                       .rule = std::move(rule),
                       .advice = std::move(advice)});
-  }
-
-  /// FMI 3.0 has more types; what goes in and out of the plant is to be what FMI 2.0 has too, or an array of its reals.
-  /// And what to do: a state cannot be left out, nor can what is set.
-  struct Refused {
-    std::string fault, advice;
-  };
-  [[nodiscard]] Refused fault_of_types() const {
-    const ModelDescription& inner = block_.file->description();
-    if (inner.version != Version::fmi3) return {};
-    const std::string again =
-        "export the model as FMI 2.0 from its tool, where arrays are single variables; the report's "
-        "laws.c and laws.mo have the laws for the model itself";
-    const auto fault = [](const Variable& variable, bool text_too) -> std::string {
-      const bool reals = variable.type == FmiType::float64 && kind_of(variable) == std::string_view("kReal");
-      if (variable.size != 1 && !reals)
-        return "has an array that is none of continuous reals, around which sealwatch writes no FMU: " + variable.name;
-      const bool plain = variable.type == FmiType::float64 || variable.type == FmiType::int32 ||
-                         variable.type == FmiType::boolean || (text_too && variable.type == FmiType::string);
-      if (plain && variable.causality != FmiCausality::structuralParameter) return "";
-      return "has a variable of a kind around which sealwatch writes no FMU: " + variable.name + " (" +
-             std::string(plain ? name_of(variable.causality) : name_of(variable.type)) + ")";
-    };
-    for (const auto* handles :
-         {&block_.setup.states, &block_.setup.parameters, &block_.setup.inputs, &block_.setup.outputs})
-      for (const Handle& handle : *handles) {
-        const auto variable = std::ranges::find(inner.variables, handle.reference, &Variable::reference);
-        const std::string found = fault(*variable, false);
-        if (found.empty()) continue;
-        return {found, handles == &block_.setup.states ? again : "leave it out of the plant file, or else " + again};
-      }
-    for (const auto& [name, value] : block_.file->settings())
-      if (std::string found = fault(*inner.find(name), true); !found.empty())
-        return {found, "leave it out of the settings, or else " + again};
-    return {};
   }
 
   // References of what the other unit does not have, in the order in which fmi2_wrapper.c numbers them.
@@ -162,7 +126,7 @@ class WrapperExporter {
   [[nodiscard]] const DrivenVariable* input_of(std::size_t plants) const {
     const DrivenVariable* found = nullptr;
     for (const DrivenVariable& input : ports_.inputs)
-      if (input.alone == plants && (found == nullptr || input.port.kind != std::string_view("kReal"))) found = &input;
+      if (input.alone == plants && (found == nullptr || !input.port.continuous)) found = &input;
     return found;
   }
 
@@ -178,7 +142,7 @@ class WrapperExporter {
         continue;
       }
       const ChannelDescription* channel = plant_.description.find_channel(plant_.inputs[k].channel);
-      channels_.push_back({reference, "kReal", {}});
+      channels_.push_back({.reference = reference, .unit = {}});
       channel_starts_.push_back(0.0);
       description_.inputs.push_back({channel->name, channel->unit, channel->meaning, 0.0, reference});
     }
@@ -190,7 +154,7 @@ class WrapperExporter {
       if (!used[parts_.places.rates + parts_.used_inputs[k]]) continue;
       const ChannelDescription* channel = plant_.description.find_channel(plant_.inputs[k].channel);
       rates_.push_back(parts_.used_inputs[k]);
-      channels_.push_back({next, "kReal", {}});
+      channels_.push_back({.reference = next, .unit = {}});
       channel_starts_.push_back(0.0);
       description_.inputs.push_back(
           {channel->name + "_rate", rate_unit(channel->unit), "rate of " + channel->name, 0.0, next++});
@@ -199,7 +163,7 @@ class WrapperExporter {
 
   void collect_parameters(std::uint32_t& next) {
     const auto own = [&](const std::string& name, const std::string& unit, const std::string& meaning, double value) {
-      values_.push_back({next, "kReal", {}});
+      values_.push_back({.reference = next, .unit = {}});
       description_.parameters.push_back({name, unit, meaning, value, next});
     };
     for (std::size_t k = 0; k < plant_.description.parameters.size(); ++k, ++next) {
@@ -225,10 +189,14 @@ class WrapperExporter {
   [[nodiscard]] static std::string table(const char* name, const std::vector<WrapperPort>& ports) {
     std::ostringstream out;
     out << "static const Port " << name << "[] = {";
-    for (const WrapperPort& port : ports)
-      out << "{" << port.reference << "u, " << port.kind << ", " << c_number(port.unit.factor) << ", "
-          << c_number(port.unit.offset) << ", " << port.element << ", " << port.size << "}, ";
-    out << "{0u, kReal, 1.0, 0.0, 0, 1}};\n";
+    for (const WrapperPort& port : ports) out << in_c(port) << ", ";
+    out << in_c({}) << "};\n";
+    return out.str();
+  }
+  [[nodiscard]] static std::string in_c(const WrapperPort& port) {
+    std::ostringstream out;
+    out << "{" << port.reference << "u, " << port.type << ", " << port.continuous << ", " << c_number(port.unit.factor)
+        << ", " << c_number(port.unit.offset) << ", " << port.element << ", " << port.size << "}";
     return out.str();
   }
   [[nodiscard]] static std::string table(const char* name, const std::vector<double>& values) {
@@ -244,26 +212,44 @@ class WrapperExporter {
     std::vector<const DrivenVariable*> result;
     for (const DrivenVariable& variable : inputs ? ports_.inputs : ports_.parameters) {
       const bool kept = is_kept(inputs ? channels_ : values_, variable);
-      if (inputs ? variable.port.kind == std::string_view("kReal") : !kept) result.push_back(&variable);
+      if (inputs ? variable.port.continuous : !kept) result.push_back(&variable);
     }
     return result;
   }
 
-  // A text is written with every letter as a number, whatever it contains.
+  // Structural parameters come first. A text is written with every letter as a number, whatever it contains.
   [[nodiscard]] std::string settings() const {
     std::ostringstream out;
+    std::size_t count = 0, structural = 0;
     out << "static const Setting settings[] = {";
-    for (const auto& [name, text] : block_.file->set_values()) {
-      const Variable& variable = *block_.file->description().find(name);
-      const bool is_text = variable.type == FmiType::string;
-      const double value = text == "true" ? 1.0 : is_text ? 0.0 : std::strtod(text.c_str(), nullptr);
-      out << "{{" << variable.reference << "u, " << (is_text ? "kText" : kind_of(variable)) << ", 1.0, 0.0, 0, 1}, "
-          << c_number(value) << ", \"" << std::oct;
-      for (const char letter : is_text ? text : std::string())
-        out << "\\" << static_cast<int>(static_cast<unsigned char>(letter)) << "\" \"";
+    const auto write = [&](const Variable& variable, std::size_t element, double value, const std::string& text) {
+      const WrapperPort port{.reference = variable.reference,
+                             .type = type_in_c(variable.type, block_.file->description().version),
+                             .unit = {},
+                             .element = static_cast<std::uint32_t>(element),
+                             .size = static_cast<std::uint32_t>(variable.size)};
+      out << "{" << in_c(port) << ", " << c_number(value) << ", \"" << std::oct;
+      for (const char letter : text) out << "\\" << static_cast<int>(static_cast<unsigned char>(letter)) << "\" \"";
       out << std::dec << "\"}, ";
+      ++count;
+    };
+    for (const bool first : {true, false}) {
+      for (const auto& [name, text] : block_.file->set_values()) {
+        const Variable& variable = *block_.file->description().find(name);
+        if ((variable.causality == FmiCausality::structuralParameter) != first) continue;
+        if (variable.type == FmiType::string) {
+          write(variable, 0, 0.0, text);
+          continue;
+        }
+        std::istringstream words(text);
+        std::string word;
+        for (std::size_t k = 0; words >> word; ++k)
+          write(variable, k, word == "true" ? 1.0 : std::strtod(word.c_str(), nullptr), "");
+      }
+      if (first) structural = count;
     }
-    out << "{{0u, kReal, 1.0, 0.0, 0, 1}, 0.0, NULL}};\n";
+    out << "{" << in_c({}) << ", 0.0, NULL}};\n#define SETTINGS " << count << "\n#define STRUCTURAL " << structural
+        << "\n";
     return out.str();
   }
 
@@ -274,7 +260,7 @@ class WrapperExporter {
     std::size_t largest = 1;
     out << "static const Array arrays[] = {";
     for (const Variable& variable : block_.file->description().variables) {
-      if (variable.type != FmiType::float64 || variable.size == 1) continue;
+      if (variable.size == 1 || !is_number(variable.type)) continue;
       largest = std::max(largest, variable.size);
       const bool is_set = variable.causality == FmiCausality::input || variable.causality == FmiCausality::parameter;
       out << "{" << variable.reference << "u, " << variable.size << ", "
@@ -311,8 +297,10 @@ class WrapperExporter {
                                                                     {"OUTPUTS", outputs_.size()}})
       out << "#define " << name << " " << count << "\n";
     out << "#define OWN " << ports_.own << "u\n\n"
-        << "enum { kReal, kDiscrete, kInteger, kBoolean, kText };\n"
-           "typedef struct {\n  unsigned reference;\n  int kind;\n  double factor, offset;\n  int element, size;\n} "
+        << "enum { kReal, kInteger, kBoolean, kText, kSingle, kInt8, kUInt8, kInt16, kUInt16, kUInt32, kInt64, "
+           "kUInt64 };\n"
+           "typedef struct {\n  unsigned reference;\n  int type, continuous;\n  double factor, offset;\n  int element, "
+           "size;\n} "
            "Port;\n"
            "typedef struct {\n  unsigned reference;\n  int size, first;\n} Array;\n"
            "typedef struct {\n  Port port;\n  double value;\n  const char* text;\n} Setting;\n"

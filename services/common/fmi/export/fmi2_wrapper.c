@@ -10,13 +10,14 @@
  *   SITES                                              all that `e` holds: STATES, VARIABLES, then what laws add
  *   OWN                                                first value reference that the other unit does not have: hidden
  *                                                      states, their rates, channels, parameters, outputs, in this order
- *   Port, Setting, and their kinds: kReal, kDiscrete (a real that changes at events alone), kInteger, kBoolean, kText
+ *   Port, Setting, and their types: kReal, kInteger, kBoolean, kText, and of FMI 3.0 kSingle, kInt8 ... kUInt64;
+ *                                                      continuous: a real that changes between events, too
  *   static const Port state_ports[], rate_ports[], variable_ports[], input_ports[], calculated_ports[], channel_ports[],
  *                     parameter_ports[];
- *   static const Array arrays[]                        of reals, which FMI 3.0 alone has: their sizes and, of those that can
+ *   static const Array arrays[]                        of numbers, which FMI 3.0 alone has: their sizes and, of those that can
  *                                                      be set, their place among IN_ARRAYS numbers, else -1; ends with a
  *                                                      size of -1; LARGEST of the sizes
- *   static const Setting settings[]                    ends with a text that is NULL
+ *   static const Setting settings[]                    SETTINGS of them, the first STRUCTURAL of structural parameters
  *   static const double start_channels[], start_parameters[], start_arrays[], hidden_sizes[];
  *   static void plant_rates, plant_inputs, plant_parameters, plant_outputs
  *       (double t, const double* x, const double* u, const double* p, const double* e, double* result);
@@ -111,8 +112,7 @@ typedef int SetVectorType(void*, const double*, size_t);
 static struct {
 #define FIELD(type, name) type##Type* name;
   EACH_FUNCTION(FIELD) EACH_RARE_FUNCTION(FIELD)
-  int (*GetArray)(void*, unsigned, double*, size_t);
-  int (*SetArray)(void*, unsigned, const double*, size_t);
+  PlainType *EnterConfigurationMode, *ExitConfigurationMode; /* FMI 3.0 alone has them */
 } inner;
 
 typedef struct {
@@ -132,37 +132,37 @@ static const Array* array_of(unsigned reference) {
   while (array->size >= 0 && array->reference != reference) ++array;
   return array->size >= 0 ? array : NULL;
 }
-static int set_real_port(Model* m, const Port* port, double value) {
-  const Array* array = port->size == 1 ? NULL : array_of(port->reference);
-  if (array == NULL) return inner.SetReal(m->inner, &port->reference, 1, &value);
-  m->arrays[array->first + port->element] = value;
-  return inner.SetArray(m->inner, port->reference, m->arrays + array->first, (size_t)array->size);
+/* All numbers of a variable of the other unit. */
+#if defined(FMI3)
+static int set_numbers(void* c, int type, unsigned reference, const double* values, size_t n);
+static int get_numbers(void* c, int type, unsigned reference, double* values, size_t n);
+#else
+static int set_numbers(void* c, int type, unsigned reference, const double* values, size_t n) {
+  const int whole = (int)(*values < 0.0 ? *values - 0.5 : *values + 0.5), yes = *values != 0.0;
+  if (type == kReal) return inner.SetReal(c, &reference, n, values);
+  if (type == kInteger) return inner.SetInteger(c, &reference, n, &whole);
+  return inner.SetBoolean(c, &reference, n, &yes);
 }
-static int get_real_port(Model* m, const Port* port, double* value) {
-  int status;
-  if (port->size == 1) return inner.GetReal(m->inner, &port->reference, 1, value);
-  status = inner.GetArray(m->inner, port->reference, m->one_array, (size_t)port->size);
-  *value = m->one_array[port->element];
+static int get_numbers(void* c, int type, unsigned reference, double* values, size_t n) {
+  int whole = 0, status;
+  if (type == kReal) return inner.GetReal(c, &reference, n, values);
+  status = (type == kInteger ? inner.GetInteger : inner.GetBoolean)(c, &reference, n, &whole);
+  *values = whole;
   return status;
 }
+#endif
 
 static int set_port(Model* m, const Port* port, double si) {
   const double value = from_si(port, si);
-  const int whole = (int)(value < 0.0 ? value - 0.5 : value + 0.5), yes = value != 0.0;
-  if (port->kind == kReal || port->kind == kDiscrete) return set_real_port(m, port, value);
-  if (port->kind == kInteger) return inner.SetInteger(m->inner, &port->reference, 1, &whole);
-  return inner.SetBoolean(m->inner, &port->reference, 1, &yes);
+  const Array* array = port->size == 1 ? NULL : array_of(port->reference);
+  if (array == NULL) return set_numbers(m->inner, port->type, port->reference, &value, 1);
+  m->arrays[array->first + port->element] = value;
+  return set_numbers(m->inner, port->type, port->reference, m->arrays + array->first, (size_t)array->size);
 }
-static int get_port(Model* m, const Port* port, double* si) {
-  double value = 0.0;
-  int whole = 0, status;
-  if (port->kind == kReal || port->kind == kDiscrete) {
-    status = get_real_port(m, port, &value);
-  } else {
-    status = (port->kind == kInteger ? inner.GetInteger : inner.GetBoolean)(m->inner, &port->reference, 1, &whole);
-    value = whole;
-  }
-  *si = to_si(port, value);
+/* As the other unit counts. */
+static int get_number(Model* m, const Port* port, double* value) {
+  const int status = get_numbers(m->inner, port->type, port->reference, m->one_array, (size_t)port->size);
+  *value = m->one_array[port->element];
   return status;
 }
 
@@ -176,11 +176,14 @@ static int inner_values(void* model) {
     if (!good(set_port(m, &input_ports[k], inputs[k]))) return kError;
   if (m->mode == kRunning && STATES > 0 && !good(inner.GetDerivatives(m->inner, rates, STATES))) return kError;
   for (k = 0; k < STATES; ++k) {
-    if (m->mode != kRunning && !good(get_real_port(m, &rate_ports[k], &rates[k]))) return kError;
+    if (m->mode != kRunning && !good(get_number(m, &rate_ports[k], &rates[k]))) return kError;
     m->e[k] = state_ports[k].factor * rates[k];
   }
-  for (k = 0; k < VARIABLES; ++k)
-    if (!good(get_port(m, &variable_ports[k], &m->e[STATES + k]))) return kError;
+  for (k = 0; k < VARIABLES; ++k) {
+    double value = 0.0;
+    if (!good(get_number(m, &variable_ports[k], &value))) return kError;
+    m->e[STATES + k] = to_si(&variable_ports[k], value);
+  }
   return kOk;
 }
 
@@ -191,7 +194,7 @@ static int refresh(Model* m) {
   if (m->known || m->mode == kInstantiated) return kOk;
   if (m->mode == kRunning && STATES > 0 && !good(inner.GetContinuousStates(m->inner, x, STATES))) return kError;
   for (k = 0; k < STATES; ++k) {
-    if (m->mode != kRunning && !good(get_real_port(m, &state_ports[k], &x[k]))) return kError;
+    if (m->mode != kRunning && !good(get_number(m, &state_ports[k], &x[k]))) return kError;
     m->x[k] = to_si(&state_ports[k], x[k]);
   }
   memset(m->e, 0, sizeof m->e);
@@ -212,20 +215,32 @@ static int push_parameters(Model* m) {
   return kOk;
 }
 
+static int apply_settings(Model* m, int k, int end) {
+  for (; k < end; ++k) {
+    const Setting* setting = &settings[k];
+    if (setting->port.type == kText
+            ? inner.SetString == NULL || !good(inner.SetString(m->inner, &setting->port.reference, 1, &setting->text))
+            : !good(set_port(m, &setting->port, setting->value)))
+      return kError;
+  }
+  return kOk;
+}
+/* The sizes of arrays, which are set in a mode of their own. */
+static int apply_structure(Model* m) {
+  if (STRUCTURAL == 0) return kOk;
+  if (inner.EnterConfigurationMode == NULL || inner.ExitConfigurationMode == NULL) return kError;
+  if (!good(inner.EnterConfigurationMode(m->inner)) || apply_settings(m, 0, STRUCTURAL) != kOk) return kError;
+  return good(inner.ExitConfigurationMode(m->inner)) ? kOk : kError;
+}
+
 static int reset(Model* m) {
-  const Setting* setting;
   int k;
   m->time = 0.0, m->mode = kInstantiated, m->known = 0;
   memset(m->x, 0, sizeof m->x), memset(m->dx, 0, sizeof m->dx), memset(m->e, 0, sizeof m->e);
   memcpy(m->u, start_channels, CHANNELS * sizeof(double));
   memcpy(m->p, start_parameters, PARAMETERS * sizeof(double));
   memcpy(m->arrays, start_arrays, IN_ARRAYS * sizeof(double));
-  for (setting = settings; setting->text != NULL; ++setting) {
-    if (setting->port.kind == kText
-            ? inner.SetString == NULL || !good(inner.SetString(m->inner, &setting->port.reference, 1, &setting->text))
-            : !good(set_port(m, &setting->port, setting->value)))
-      return kError;
-  }
+  if (apply_structure(m) != kOk || apply_settings(m, STRUCTURAL, SETTINGS) != kOk) return kError;
   for (k = 0; k < PARAMETERS; ++k)
     if (parameter_ports[k].reference < OWN && !good(set_port(m, &parameter_ports[k], m->p[k]))) return kError;
   return push_parameters(m);
@@ -413,10 +428,10 @@ static int own_value(Model* m, unsigned reference, int element, double* value) {
   for (k = 0; k < STATES; ++k)
     if (state_ports[k].reference == reference) return 0;
   for (k = 0; k < CHANNELS; ++k)
-    if (channel_ports[k].kind == kReal && is_port(&channel_ports[k], reference, element))
+    if (channel_ports[k].continuous && is_port(&channel_ports[k], reference, element))
       return *value = from_si(&channel_ports[k], m->u[k]), 1;
   for (k = 0; k < PARAMETERS; ++k)
-    if (parameter_ports[k].kind == kReal && is_port(&parameter_ports[k], reference, element))
+    if (parameter_ports[k].continuous && is_port(&parameter_ports[k], reference, element))
       return *value = from_si(&parameter_ports[k], m->p[k]), 1;
   for (k = 0; k < STATES; ++k)
     if (is_port(&rate_ports[k], reference, element)) return *value = m->dx[k] / state_ports[k].factor, 1;
@@ -430,6 +445,24 @@ static int own_value(Model* m, unsigned reference, int element, double* value) {
   plant_outputs(m->time, m->x, m->u, m->p, m->e, outputs);
   return *value = outputs[k], 1;
 }
+/* Keeps a value that drives the plant. Returns whether the other unit is not to have it: it gets what follows from it. */
+static int keep(Model* m, int type, unsigned reference, int element, double value, int* status) {
+  int k;
+  m->known = 0;
+  for (k = 0; k < CHANNELS; ++k)
+    if (channel_ports[k].type == type && is_port(&channel_ports[k], reference, element))
+      return m->u[k] = to_si(&channel_ports[k], value), channel_ports[k].continuous;
+  for (k = 0; k < PARAMETERS; ++k)
+    if (parameter_ports[k].type == type && is_port(&parameter_ports[k], reference, element)) {
+      m->p[k] = to_si(&parameter_ports[k], value);
+      *status = push_parameters(m);
+      return reference >= OWN || *status != kOk;
+    }
+  if (type == kReal && reference >= OWN && reference - OWN < HIDDEN)
+    return m->x[STATES + (int)(reference - OWN)] = value, 1;
+  return 0;
+}
+#if !defined(FMI3)
 API int fmi2GetReal(void* c, const unsigned* references, size_t n, double* values) {
   Model* m = c;
   size_t k;
@@ -442,26 +475,6 @@ API int fmi2GetReal(void* c, const unsigned* references, size_t n, double* value
   }
   return kOk;
 }
-
-static int same_kind(int own, int asked) { return own == asked || (own == kDiscrete && asked == kReal); }
-
-/* Keeps a value that drives the plant. Returns whether the other unit is not to have it: it gets what follows from it. */
-static int keep(Model* m, int kind, unsigned reference, int element, double value, int* status) {
-  int k;
-  m->known = 0;
-  for (k = 0; k < CHANNELS; ++k)
-    if (same_kind(channel_ports[k].kind, kind) && is_port(&channel_ports[k], reference, element))
-      return m->u[k] = to_si(&channel_ports[k], value), channel_ports[k].kind == kReal;
-  for (k = 0; k < PARAMETERS; ++k)
-    if (parameter_ports[k].kind == kind && is_port(&parameter_ports[k], reference, element)) {
-      m->p[k] = to_si(&parameter_ports[k], value);
-      *status = push_parameters(m);
-      return reference >= OWN || *status != kOk;
-    }
-  if (kind == kReal && reference >= OWN && reference - OWN < HIDDEN)
-    return m->x[STATES + (int)(reference - OWN)] = value, 1;
-  return 0;
-}
 API int fmi2SetReal(void* c, const unsigned* references, size_t n, const double* values) {
   size_t k;
   for (k = 0; k < n; ++k) {
@@ -472,7 +485,7 @@ API int fmi2SetReal(void* c, const unsigned* references, size_t n, const double*
   }
   return kOk;
 }
-#define WHOLE(name, kind)                                                                      \
+#define WHOLE(name, type)                                                                      \
   API int fmi2Get##name(void* c, const unsigned* references, size_t n, int* values) {           \
     if (n > 0 && refresh(c) != kOk) return kError;                                              \
     return inner.Get##name(((Model*)c)->inner, references, n, values);                          \
@@ -480,10 +493,9 @@ API int fmi2SetReal(void* c, const unsigned* references, size_t n, const double*
   API int fmi2Set##name(void* c, const unsigned* references, size_t n, const int* values) {     \
     size_t k;                                                                                   \
     int status = kOk;                                                                           \
-    for (k = 0; k < n && good(status); ++k) keep(c, kind, references[k], 0, values[k], &status); \
+    for (k = 0; k < n && good(status); ++k) keep(c, type, references[k], 0, values[k], &status); \
     return good(status) ? inner.Set##name(((Model*)c)->inner, references, n, values) : status;  \
   }
-#if !defined(FMI3)
 WHOLE(Integer, kInteger)
 WHOLE(Boolean, kBoolean)
 API int fmi2GetString(void* c, const unsigned* references, size_t n, const char** values) {

@@ -1,7 +1,6 @@
 /* The functions of FMI 3.0 for Model Exchange around another unit of FMI 3.0, with laws added: fmi2_wrapper.c, which stands
  * before this text, does the work. Here what it calls of the other unit becomes a call of FMI 3.0, and what importers call
- * of FMI 3.0 becomes a call of its functions. Variables that drive the plant are single numbers of the types Float64, Int32
- * and Boolean, and arrays of Float64; all others are the other unit's alone. */
+ * of FMI 3.0 becomes a call of its functions. Texts, binary variables and clocks are the other unit's alone. */
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -24,13 +23,26 @@ typedef int Count3Type(void*, size_t*);
 #define TYPED(type, name)                                                      \
   typedef int Get##name##Type(void*, const Ref*, size_t, type*, size_t);        \
   typedef int Set##name##Type(void*, const Ref*, size_t, const type*, size_t);
-/* Types of variables that the other unit alone has. */
-#define EACH_OTHER_TYPE(X)                                                                                \
-  X(float, Float32) X(int8_t, Int8) X(uint8_t, UInt8) X(int16_t, Int16) X(uint16_t, UInt16)                \
-  X(uint32_t, UInt32) X(int64_t, Int64) X(uint64_t, UInt64)
-#define EACH_TYPE(X) X(double, Float64) X(int32_t, Int32) X(bool, Boolean) X(Text, String) EACH_OTHER_TYPE(X)
-EACH_TYPE(TYPED)
-/* Binary variables and clocks are the other unit's alone, too. */
+/* The types of numbers; an enumeration is an Int64. The nearest number of a type is the one that it is set to. */
+#define AS_SINGLE(type, value, least, most) (type)(value)
+#define AS_FLAG(type, value, least, most) ((value) != 0.0)
+#define AS_WHOLE(type, value, least, most)   \
+  ((value) >= (double)(most)    ? (type)(most) \
+   : (value) <= (double)(least) ? (type)(least) \
+                                : (type)((value) < 0.0 ? (value)-0.5 : (value) + 0.5))
+#define EACH_OTHER_NUMBER(X)                                                                            \
+  X(float, Float32, kSingle, AS_SINGLE, 0, 0) X(bool, Boolean, kBoolean, AS_FLAG, 0, 0)                  \
+  X(int8_t, Int8, kInt8, AS_WHOLE, INT8_MIN, INT8_MAX) X(uint8_t, UInt8, kUInt8, AS_WHOLE, 0, UINT8_MAX)  \
+  X(int16_t, Int16, kInt16, AS_WHOLE, INT16_MIN, INT16_MAX)                                             \
+  X(uint16_t, UInt16, kUInt16, AS_WHOLE, 0, UINT16_MAX)                                                 \
+  X(int32_t, Int32, kInteger, AS_WHOLE, INT32_MIN, INT32_MAX)                                           \
+  X(uint32_t, UInt32, kUInt32, AS_WHOLE, 0, UINT32_MAX)                                                 \
+  X(int64_t, Int64, kInt64, AS_WHOLE, INT64_MIN, INT64_MAX)                                             \
+  X(uint64_t, UInt64, kUInt64, AS_WHOLE, 0, UINT64_MAX)
+#define EACH_NUMBER(X) X(double, Float64, kReal, AS_SINGLE, 0, 0) EACH_OTHER_NUMBER(X)
+#define NUMBER_TYPED(type, name, kind, as, least, most) TYPED(type, name)
+EACH_NUMBER(NUMBER_TYPED)
+TYPED(Text, String)
 #define INNER ((Model*)c)->inner
 #define EACH_PASSED_ON(GET, SET)                                                                                      \
   GET(GetBinary, (void* c, const Ref* r, size_t n, size_t* sizes, const uint8_t** values, size_t size),               \
@@ -70,61 +82,53 @@ static struct {
 #define TYPED_FIELD(type, name) \
   Get##name##Type* Get##name;   \
   Set##name##Type* Set##name;
-  EACH_TYPE(TYPED_FIELD)
+#define NUMBER_FIELD(type, name, kind, as, least, most) TYPED_FIELD(type, name)
+  EACH_NUMBER(NUMBER_FIELD) TYPED_FIELD(Text, String)
 #define PASSED_FIELD(name, parameters, arguments) name##Type* name;
   EACH_PASSED_ON(PASSED_FIELD, PASSED_FIELD)
 } inner3;
 
 /* The other unit, as fmi2_wrapper.c calls it. */
-static int get_real(void* c, const unsigned* references, size_t n, double* values) {
-  return inner3.GetFloat64(c, references, n, values, n);
-}
-static int set_real(void* c, const unsigned* references, size_t n, const double* values) {
-  return inner3.SetFloat64(c, references, n, values, n);
-}
-static int get_array(void* c, unsigned reference, double* values, size_t size) {
-  return inner3.GetFloat64(c, &reference, 1, values, size);
-}
-static int set_array(void* c, unsigned reference, const double* values, size_t size) {
-  return inner3.SetFloat64(c, &reference, 1, values, size);
-}
-static int get_integer(void* c, const unsigned* references, size_t n, int* values) {
-  size_t k;
-  int status = inner3.GetInt32 == NULL ? kError : kOk;
-  for (k = 0; k < n && good(status); ++k) {
-    int32_t value = 0;
-    status = inner3.GetInt32(c, &references[k], 1, &value, 1);
-    values[k] = value;
+#define NUMBERS(type, name, kind, as, least, most)                                                                 \
+  static int set_##name(void* c, unsigned reference, const double* values, size_t n) {                              \
+    type one, *typed = n == 1 ? &one : malloc((n + 1) * sizeof *typed);                                             \
+    int status = typed == NULL || inner3.Set##name == NULL ? kError : kOk;                                          \
+    size_t k;                                                                                                      \
+    for (k = 0; k < n && good(status); ++k) typed[k] = as(type, values[k], least, most);                            \
+    if (good(status)) status = inner3.Set##name(c, &reference, 1, typed, n);                                        \
+    if (n != 1) free(typed);                                                                                       \
+    return status;                                                                                                 \
+  }                                                                                                                \
+  static int get_##name(void* c, unsigned reference, double* values, size_t n) {                                    \
+    type one, *typed = n == 1 ? &one : malloc((n + 1) * sizeof *typed);                                             \
+    int status = typed == NULL || inner3.Get##name == NULL ? kError : inner3.Get##name(c, &reference, 1, typed, n); \
+    size_t k;                                                                                                      \
+    for (k = 0; k < n && good(status); ++k) values[k] = (double)typed[k];                                           \
+    if (n != 1) free(typed);                                                                                       \
+    return status;                                                                                                 \
   }
-  return status;
-}
-static int set_integer(void* c, const unsigned* references, size_t n, const int* values) {
-  size_t k;
-  int status = inner3.SetInt32 == NULL ? kError : kOk;
-  for (k = 0; k < n && good(status); ++k) {
-    const int32_t value = values[k];
-    status = inner3.SetInt32(c, &references[k], 1, &value, 1);
+EACH_OTHER_NUMBER(NUMBERS)
+#define SET_NUMBERS(type, name, kind, as, least, most) \
+  case kind:                                           \
+    return set_##name(c, reference, values, n);
+#define GET_NUMBERS(type, name, kind, as, least, most) \
+  case kind:                                           \
+    return get_##name(c, reference, values, n);
+static int set_numbers(void* c, int type, unsigned reference, const double* values, size_t n) {
+  switch (type) {
+    case kReal:
+      return inner3.SetFloat64(c, &reference, 1, values, n);
+    EACH_OTHER_NUMBER(SET_NUMBERS)
   }
-  return status;
+  return kError;
 }
-static int get_boolean(void* c, const unsigned* references, size_t n, int* values) {
-  size_t k;
-  int status = inner3.GetBoolean == NULL ? kError : kOk;
-  for (k = 0; k < n && good(status); ++k) {
-    bool value = false;
-    status = inner3.GetBoolean(c, &references[k], 1, &value, 1);
-    values[k] = value ? 1 : 0;
+static int get_numbers(void* c, int type, unsigned reference, double* values, size_t n) {
+  switch (type) {
+    case kReal:
+      return inner3.GetFloat64(c, &reference, 1, values, n);
+    EACH_OTHER_NUMBER(GET_NUMBERS)
   }
-  return status;
-}
-static int set_boolean(void* c, const unsigned* references, size_t n, const int* values) {
-  size_t k;
-  int status = inner3.SetBoolean == NULL ? kError : kOk;
-  for (k = 0; k < n && good(status); ++k) {
-    const bool value = values[k] != 0;
-    status = inner3.SetBoolean(c, &references[k], 1, &value, 1);
-  }
-  return status;
+  return kError;
 }
 static int set_text(void* c, const unsigned* references, size_t n, const char* const* values) {
   return inner3.SetString == NULL ? kError : inner3.SetString(c, references, n, values, n);
@@ -155,7 +159,8 @@ static const char* look_up(void* library) {
 #define SAME3(type, name)                                        \
   inner.name = (type##Type*)symbol(library, "fmi3" #name);        \
   if (inner.name == NULL) missing = "its function fmi3" #name;
-  EACH_TYPE(FIND3_TYPED)
+#define FIND3_NUMBER(type, name, kind, as, least, most) FIND3_TYPED(type, name)
+  EACH_NUMBER(FIND3_NUMBER) FIND3_TYPED(Text, String)
 #define FIND3_PASSED(name, parameters, arguments) inner3.name = (name##Type*)symbol(library, "fmi3" #name);
   EACH_PASSED_ON(FIND3_PASSED, FIND3_PASSED)
   EACH_NEEDED3(FIND3)
@@ -169,9 +174,9 @@ static const char* look_up(void* library) {
   if (inner.GetDerivatives == NULL) missing = "its function fmi3GetContinuousStateDerivatives";
   inner.Terminate = (PlainType*)symbol(library, "fmi3Terminate"); /* what few tools call it may lack */
   inner.Reset = (PlainType*)symbol(library, "fmi3Reset");
-  inner.GetArray = get_array, inner.SetArray = set_array;
-  inner.GetReal = get_real, inner.SetReal = set_real, inner.GetInteger = get_integer, inner.SetInteger = set_integer;
-  inner.GetBoolean = get_boolean, inner.SetBoolean = set_boolean, inner.SetString = set_text;
+  inner.EnterConfigurationMode = (PlainType*)symbol(library, "fmi3EnterConfigurationMode");
+  inner.ExitConfigurationMode = (PlainType*)symbol(library, "fmi3ExitConfigurationMode");
+  inner.SetString = set_text;
   inner.NewDiscreteStates = new_discrete_states, inner.CompletedIntegratorStep = completed_step;
   return missing;
 }
@@ -242,68 +247,67 @@ EXPORT int fmi3GetNumberOfEventIndicators(void* c, size_t* n) {
                                                    : inner3.GetNumberOfEventIndicators(((Model*)c)->inner, n);
 }
 
-/* An array comes from the other unit, and elements that are this one's own take their place in it. */
-static int get_whole(Model* m, const Array* array, double* values) {
-  const int status = inner.GetArray(m->inner, array->reference, values, (size_t)array->size);
-  int k;
-  for (k = 0; k < array->size; ++k) own_value(m, array->reference, k, &values[k]);
-  return status;
+static size_t size_of(Ref reference) {
+  const Array* array = array_of(reference);
+  return array == NULL ? 1 : (size_t)array->size;
 }
-static int set_whole(Model* m, const Array* array, const double* values) {
-  int status = kOk, k;
-  m->known = 0;
-  if (array->first >= 0) memcpy(m->arrays + array->first, values, (size_t)array->size * sizeof *values);
-  for (k = 0; k < array->size && good(status); ++k) keep(m, kReal, array->reference, k, values[k], &status);
-  return good(status) ? inner.SetArray(m->inner, array->reference, values, (size_t)array->size) : status;
-}
-EXPORT int fmi3GetFloat64(void* c, const Ref* references, size_t n, double* values, size_t size) {
-  size_t k, done = 0;
-  int status = n > 0 && refresh(c) != kOk ? kError : kOk;
-  for (k = 0; k < n && good(status); ++k) {
-    const Array* array = array_of(references[k]);
-    const size_t count = array == NULL ? 1 : (size_t)array->size;
-    if (count > size - done) return kError;
-    status = array == NULL ? fmi2GetReal(c, &references[k], 1, values + done) : get_whole(c, array, values + done);
-    done += count;
-  }
-  return status;
-}
-EXPORT int fmi3SetFloat64(void* c, const Ref* references, size_t n, const double* values, size_t size) {
-  size_t k, done = 0;
-  int status = kOk;
-  for (k = 0; k < n && good(status); ++k) {
-    const Array* array = array_of(references[k]);
-    const size_t count = array == NULL ? 1 : (size_t)array->size;
-    if (count > size - done) return kError;
-    status = array == NULL ? fmi2SetReal(c, &references[k], 1, values + done) : set_whole(c, array, values + done);
-    done += count;
-  }
-  return status;
-}
-#define PASSED_ON(type, name)                                                                                   \
+/* Numbers come from the other unit, and those that are this one's own take their place. */
+#define GET_NUMBER(type, name, kind, as, least, most)                                                           \
   EXPORT int fmi3Get##name(void* c, const Ref* references, size_t n, type* values, size_t size) {                \
-    if (n > 0 && refresh(c) != kOk) return kError;                                                               \
-    return inner3.Get##name == NULL ? kError : inner3.Get##name(((Model*)c)->inner, references, n, values, size); \
-  }                                                                                                              \
-  static int set_##name(void* c, const Ref* references, size_t n, const type* values, size_t size) {             \
-    ((Model*)c)->known = 0;                                                                                      \
-    return inner3.Set##name == NULL ? kError : inner3.Set##name(((Model*)c)->inner, references, n, values, size); \
+    Model* m = c;                                                                                                \
+    size_t k, element, done = 0;                                                                                 \
+    int status = n > 0 && refresh(m) != kOk ? kError : kOk;                                                      \
+    for (k = 0; k < n && good(status); ++k) {                                                                    \
+      const size_t count = size_of(references[k]);                                                               \
+      if (count > size - done) return kError;                                                                    \
+      if (references[k] < OWN)                                                                                   \
+        status = inner3.Get##name == NULL                                                                        \
+                     ? kError                                                                                    \
+                     : inner3.Get##name(m->inner, &references[k], 1, values + done, count);                      \
+      for (element = 0; element < count && good(status); ++element) {                                            \
+        double own = 0.0;                                                                                        \
+        if (own_value(m, references[k], (int)element, &own))                                                     \
+          values[done + element] = (type)own;                                                                    \
+        else if (references[k] >= OWN)                                                                           \
+          status = kError;                                                                                       \
+      }                                                                                                          \
+      done += count;                                                                                             \
+    }                                                                                                            \
+    return status;                                                                                               \
   }
-#define SET_ALONE(type, name)                                                                        \
-  EXPORT int fmi3Set##name(void* c, const Ref* references, size_t n, const type* values, size_t size) { \
-    return set_##name(c, references, n, values, size);                                                \
+/* An array goes to the other unit whole, a number alone where it is not this one's own. */
+#define SET_NUMBER(type, name, kind, as, least, most)                                                           \
+  EXPORT int fmi3Set##name(void* c, const Ref* references, size_t n, const type* values, size_t size) {          \
+    Model* m = c;                                                                                                \
+    size_t k, element, done = 0;                                                                                 \
+    int status = kOk;                                                                                            \
+    for (k = 0; k < n && good(status); ++k) {                                                                    \
+      const Array* array = array_of(references[k]);                                                              \
+      const size_t count = size_of(references[k]);                                                               \
+      int kept = 0;                                                                                              \
+      if (count > size - done) return kError;                                                                    \
+      m->known = 0;                                                                                              \
+      for (element = 0; array != NULL && array->first >= 0 && element < count; ++element)                        \
+        m->arrays[(size_t)array->first + element] = (double)values[done + element];                              \
+      for (element = 0; element < count && good(status); ++element)                                              \
+        kept = keep(m, kind, references[k], (int)element, (double)values[done + element], &status);              \
+      if (good(status) && !(array == NULL && kept))                                                              \
+        status = inner3.Set##name == NULL                                                                        \
+                     ? kError                                                                                    \
+                     : inner3.Set##name(m->inner, &references[k], 1, values + done, count);                      \
+      done += count;                                                                                             \
+    }                                                                                                            \
+    return status;                                                                                               \
   }
-#define SET_KEPT(type, name, kind)                                                                            \
-  EXPORT int fmi3Set##name(void* c, const Ref* references, size_t n, const type* values, size_t size) {        \
-    size_t k;                                                                                                  \
-    int status = kOk;                                                                                          \
-    for (k = 0; size == n && k < n && good(status); ++k) keep(c, kind, references[k], 0, values[k], &status);  \
-    return good(status) ? set_##name(c, references, n, values, size) : status;                                 \
-  }
-EACH_OTHER_TYPE(PASSED_ON) EACH_OTHER_TYPE(SET_ALONE)
-PASSED_ON(Text, String) SET_ALONE(Text, String)
-PASSED_ON(int32_t, Int32) SET_KEPT(int32_t, Int32, kInteger)
-PASSED_ON(bool, Boolean) SET_KEPT(bool, Boolean, kBoolean)
+EACH_NUMBER(GET_NUMBER) EACH_NUMBER(SET_NUMBER)
+EXPORT int fmi3GetString(void* c, const Ref* references, size_t n, Text* values, size_t size) {
+  if (n > 0 && refresh(c) != kOk) return kError;
+  return inner3.GetString == NULL ? kError : inner3.GetString(INNER, references, n, values, size);
+}
+EXPORT int fmi3SetString(void* c, const Ref* references, size_t n, const Text* values, size_t size) {
+  ((Model*)c)->known = 0;
+  return inner3.SetString == NULL ? kError : inner3.SetString(INNER, references, n, values, size);
+}
 
 #define GET_PASSED(name, parameters, arguments)               \
   EXPORT int fmi3##name parameters {                           \

@@ -121,7 +121,20 @@ class Rewriter {
       }
   }
 
+  // Which sizes its arrays have is settled by the settings, and with others than the description's their starts are known
+  // to the binary alone.
+  void settle_structure() {
+    for (std::size_t place = 0; place < variables_.size(); ++place) {
+      const Variable& variable = inner_.description().variables[place];
+      if (variable.start.empty() && variables_[place].child("Dimension")) variables_[place].remove_attribute("start");
+      if (variable.causality != FmiCausality::structuralParameter) continue;
+      set(variables_[place], "causality", "local");
+      set(variables_[place], "variability", "constant");
+    }
+  }
+
   void change_variables() {
+    settle_structure();
     for (const ChangedStart& start : own_.starts) {
       const Variable& variable = inner_.description().variables[start.variable];
       if (variable.size > 1)

@@ -44,7 +44,7 @@ class Finder {
                                          outputs_ + block_.inputs.size() + k));
     for (auto* list : {&found_.inputs, &found_.parameters}) keep_arrays_whole(*list);
     for (const DrivenVariable& input : found_.inputs)
-      if (input.port.kind != std::string_view("kReal") && (!input.alone || input.with_laws))
+      if (!input.port.continuous && (!input.alone || input.with_laws))
         return fail(Error{.file = block_.file->name(),
                           .place = {},
                           .value = description_.variables[input.variable].name,
@@ -54,10 +54,7 @@ class Finder {
       found_.states.push_back(port_at(block_.setup.states, {k, block_.states[k]}));
       found_.rates.push_back(port_at(block_.setup.derivatives, {k, {}}));
     }
-    for (const Port& port : block_.variables) {
-      found_.variables.push_back(port_at(block_.setup.outputs, port));
-      found_.variables.back().kind = kind_of(at_reference(found_.variables.back().reference));
-    }
+    for (const Port& port : block_.variables) found_.variables.push_back(port_at(block_.setup.outputs, port));
     for (std::size_t k = 0; k < outputs_; ++k) found_.shown.push_back(shown_by(frame_.outputs.values[k]));
     for (const Variable& variable : description_.variables) found_.own = std::max(found_.own, variable.reference + 1);
     return std::move(found_);
@@ -65,10 +62,11 @@ class Finder {
 
  private:
   /// Of an element among those of whole variables.
-  static WrapperPort port_at(const std::vector<Handle>& handles, const Port& port) {
+  [[nodiscard]] WrapperPort port_at(const std::vector<Handle>& handles, const Port& port) const {
     std::size_t place = port.place, handle = 0;
     while (place >= handles[handle].size) place -= handles[handle++].size;
     return {.reference = handles[handle].reference,
+            .type = type_in_c(handles[handle].type, description_.version),
             .unit = port.unit,
             .element = static_cast<std::uint32_t>(place),
             .size = handles[handle].size};
@@ -90,10 +88,14 @@ class Finder {
     DrivenVariable result{
         .variable = 0, .node = frame_.outputs.values[row], .alone = {}, .with_laws = false, .port = {}};
     result.port = port_at(handles, port);
-    while (description_.variables[result.variable].reference != result.port.reference ||
-           description_.variables[result.variable].causality != causality)
-      ++result.variable;
-    result.port.kind = kind_of(description_.variables[result.variable]);
+    const auto is_driven = [&](const Variable& variable) {
+      return variable.reference == result.port.reference && variable.causality == causality &&
+             type_in_c(variable.type, description_.version) == std::string_view(result.port.type);
+    };
+    while (!is_driven(description_.variables[result.variable])) ++result.variable;
+    const Variable& variable = description_.variables[result.variable];
+    const bool real = variable.type == FmiType::float64 || variable.type == FmiType::float32;
+    result.port.continuous = real && (causality != FmiCausality::input || changes_between_events(variable));
     const Node plain = without_added(expressions_, result.node, frame_.places);
     result.with_laws = plain != result.node;
     const Expressions::Entry& entry = expressions_.entries()[plain];
@@ -104,8 +106,11 @@ class Finder {
     return result;
   }
 
-  [[nodiscard]] const Variable& at_reference(std::uint32_t reference) const {
-    return *std::ranges::find(description_.variables, reference, &Variable::reference);
+  [[nodiscard]] const Variable& at_port(const WrapperPort& port) const {
+    return *std::ranges::find_if(description_.variables, [&](const Variable& variable) {
+      return variable.reference == port.reference &&
+             type_in_c(variable.type, description_.version) == std::string_view(port.type);
+    });
   }
 
   // A state of the FMU, or one of its variables.
@@ -113,13 +118,13 @@ class Finder {
     const Expressions::Entry& entry = frame_.expressions.entries()[node];
     if (entry.operation != Operation::variable) return std::nullopt;
     const std::size_t states = block_.states.size();
-    std::optional<std::uint32_t> reference;
+    std::optional<WrapperPort> port;
     if (entry.a >= frame_.places.states && entry.a < frame_.places.states + states)
-      reference = port_at(block_.setup.states, {entry.a - frame_.places.states, {}}).reference;
+      port = port_at(block_.setup.states, {entry.a - frame_.places.states, {}});
     if (entry.a >= frame_.places.added + states && entry.a < frame_.places.added + states + block_.variables.size())
-      reference = port_at(block_.setup.outputs, block_.variables[entry.a - frame_.places.added - states]).reference;
-    if (!reference || at_reference(*reference).size != 1) return std::nullopt;
-    return static_cast<std::size_t>(&at_reference(*reference) - description_.variables.data());
+      port = port_at(block_.setup.outputs, block_.variables[entry.a - frame_.places.added - states]);
+    if (!port || port->size != 1) return std::nullopt;
+    return static_cast<std::size_t>(&at_port(*port) - description_.variables.data());
   }
 
   const FmuBlock& block_;
@@ -132,12 +137,32 @@ class Finder {
 
 }  // namespace
 
-const char* kind_of(const Variable& variable) {
-  switch (variable.type) {
+const char* type_in_c(FmiType type, Version version) {
+  switch (type) {
     case FmiType::float64:
-      return changes_between_events(variable) || variable.causality != FmiCausality::input ? "kReal" : "kDiscrete";
+      return "kReal";
+    case FmiType::float32:
+      return "kSingle";
     case FmiType::boolean:
       return "kBoolean";
+    case FmiType::string:
+      return "kText";
+    case FmiType::int8:
+      return "kInt8";
+    case FmiType::uint8:
+      return "kUInt8";
+    case FmiType::int16:
+      return "kInt16";
+    case FmiType::uint16:
+      return "kUInt16";
+    case FmiType::uint32:
+      return "kUInt32";
+    case FmiType::uint64:
+      return "kUInt64";
+    case FmiType::int64:
+      return "kInt64";
+    case FmiType::enumeration:
+      return version == Version::fmi3 ? "kInt64" : "kInteger";
     default:
       return "kInteger";
   }

@@ -13,13 +13,14 @@ namespace sealwatch::fmi {
 /// A variable by which a value goes in or out, as fmi2_wrapper.c has it.
 struct WrapperPort {
   std::uint32_t reference = 0;
-  const char* kind = "kReal";
+  const char* type = "kReal";
+  bool continuous = true;  ///< may change between events
   Conversion unit;
   std::uint32_t element = 0, size = 1;  ///< of an array
 };
 
-/// The kind of a variable's port, as fmi2_wrapper.c names it.
-[[nodiscard]] const char* kind_of(const Variable& variable);
+/// A type of variables, as fmi2_wrapper.c names it: FMI 2.0 has whole numbers of one kind.
+[[nodiscard]] const char* type_in_c(FmiType type, Version version);
 
 /// An input or a parameter of the FMU, and the expression that the plant file has for it.
 struct DrivenVariable {

@@ -201,8 +201,24 @@ std::string advice_on_layout(std::string_view head, const LogLayout& given) {
          ", decimal: " + (other->form.decimal == ',' ? "comma" : "point");
 }
 
+/// "Unit" of "Unit: mm", as Simulink writes what is said of each column; "" where nothing is.
+std::string_view label_of(std::string_view cell) {
+  cell = trim(cell);
+  const std::size_t end = cell.find(": ");
+  return end == std::string_view::npos ? std::string_view() : cell.substr(0, end);
+}
+
+/// Whether its cells say the same thing of their columns: "Type: double", "Type: single".
+bool is_labelled(const std::vector<std::string>& row) {
+  std::set<std::string_view> labels;
+  for (const std::string& cell : row)
+    if (!is_blank(cell)) labels.insert(label_of(cell));
+  return labels.size() == 1 && !labels.begin()->empty() && row.size() > 1;
+}
+
 std::string without_brackets(std::string_view text) {
   text = trim(text);
+  if (text.starts_with("Unit: ")) text = trim(text.substr(6));
   if (text.size() > 2 && (text.front() == '[' || text.front() == '(')) text = trim(text.substr(1, text.size() - 2));
   return text == "-" ? "" : as_utf8(text);
 }
@@ -215,7 +231,7 @@ bool is_name_of_units(std::string_view cell) {
 }
 
 std::vector<std::string> without_name_of_units(std::vector<std::string> row) {
-  if (!row.empty() && is_name_of_units(row.front())) row.front().clear();
+  if (!row.empty() && is_name_of_units(row.front()) && !is_labelled(row)) row.front().clear();
   return row;
 }
 
@@ -281,6 +297,8 @@ void find_header(const Reading& reading, const LogLayout& given, FoundLayout& ou
   const bool header_given = given.header_row > 0;
   const std::size_t least = header_given ? static_cast<std::size_t>(given.header_row) : 1;
   std::size_t above = without_remarks(reading, filled_row(out.first_row - 1), header_given ? least : 0);
+  for (; above > least && is_labelled(row(above)); above = filled_row(above - 1))
+    if (out.units_row == 0 && label_of(row(above).back()) == "Unit") out.units_row = above;
   const auto are_units = [&](std::size_t number) {
     if (number <= least || row(number).size() <= 1) return false;
     const std::size_t names = filled_row(number - 1);
@@ -326,6 +344,36 @@ class NamedRows {
   const Reading& reading_;
   bool are_few_ = false;
 };
+
+/// TwinCAT Scope: each row above the table begins with its key, which stands again over each further column of times.
+constexpr const char *kScopeName = "Name", *kScopeUnit = "Unit", *kScopeStep = "SampleTime[ms]";
+
+bool is_scope_export(const Reading& reading, std::size_t first_row) {
+  const auto has = [&](const char* key) {
+    return std::any_of(reading.rows.begin(), reading.rows.begin() + static_cast<std::ptrdiff_t>(first_row - 1),
+                       [&](const auto& row) { return row.size() == reading.width && trim(row.front()) == key; });
+  };
+  return has(kScopeName) && has(kScopeStep);
+}
+
+void name_scope_columns(const Reading& reading, FoundLayout& out) {
+  for (std::size_t number = 1; number < out.first_row; ++number) {
+    const std::vector<std::string>& row = reading.rows[number - 1];
+    if (row.size() != reading.width) continue;
+    const bool names = trim(row.front()) == kScopeName, units = trim(row.front()) == kScopeUnit;
+    if (!names && !units) continue;
+    (names ? out.header_row : out.units_row) = number;
+    std::vector<std::string>& cells = names ? out.header : out.units;
+    cells.clear();
+    for (const std::string& cell : row) {
+      const bool of_times = trim(cell) == trim(row.front());  // counted from the first sample
+      cells.push_back(!of_times ? header_text(cell) : names ? "Time" : "ms");
+    }
+  }
+  if (out.units.size() != out.header.size()) out.units.assign(out.header.size(), "");
+  for (std::size_t k = 0; k < out.header.size(); ++k)
+    if (out.header[k] == "Time") out.units[k] = "ms";
+}
 
 /// The table's first row behind `least`; 0: there is none. Named rows are preamble where a row of names stands between
 /// them and the table; else they are the table's, and whoever reads it refuses the text.
@@ -470,6 +518,10 @@ Result<FoundLayout> find_layout(std::string_view head, const LogLayout& given) {
   if (out.first_row == 0 || out.first_row > reading->rows.size())
     return fail(error_at("row " + std::to_string(reading->rows.size()) + ", column 1", {},
                          "the file ends before its first row of numbers", "look at header_row and first_row"));
+  if (given.header_row == 0 && is_scope_export(*reading, out.first_row)) {
+    name_scope_columns(*reading, out);
+    return out;
+  }
   find_header(*reading, given, out);
   const auto cells_of = [&](std::size_t number) {
     return filled_to(number > 0 ? reading->rows[number - 1] : std::vector<std::string>(), reading->width);
@@ -488,7 +540,9 @@ std::string header_text(std::string_view cell) {
     const bool is_break = letter == '\n' || letter == '\r';
     if (!is_break || !text.ends_with(' ')) text += is_break ? ' ' : letter;
   }
-  return as_utf8(trim(text));
+  std::string_view name = trim(text);
+  const bool is_quoted = name.size() > 2 && name.front() == '"' && name.find('"', 1) == name.size() - 1;
+  return as_utf8(is_quoted ? trim(name.substr(1, name.size() - 2)) : name);
 }
 
 bool repeats_head(const FoundLayout& layout, const std::vector<std::string_view>& cells) {
@@ -514,9 +568,21 @@ bool is_index(std::string_view text) {
 
 }  // namespace
 
+namespace {
+
+bool is_unit_or_time(std::string_view text) { return is_unit(text) || TimeFormat::of(text).has_value(); }
+
+/// "ms" of "ms seit Start", where words follow; all of it where it is a unit, or begins with none.
+std::string_view unit_before_words(std::string_view text) {
+  const std::string_view first = text.substr(0, text.find_first_of(" ,;"));
+  return !is_unit_or_time(text) && is_unit(first) ? first : text;
+}
+
+}  // namespace
+
 NameAndUnitText split_header_cell(std::string_view cell) {
   cell = trim(cell);
-  for (const auto& [open, close] : {std::pair{'[', ']'}, {'(', ')'}}) {
+  for (const auto& [open, close] : {std::pair{'[', ']'}, {'(', ')'}, {'{', '}'}}) {
     const std::size_t at = opening_of(cell, open, close);
     if (at == std::string_view::npos || at == 0) continue;
     const std::size_t blank = cell.rfind(' ', at);
@@ -526,8 +592,8 @@ NameAndUnitText split_header_cell(std::string_view cell) {
     const std::string_view unit = trim(cell.substr(at + 1, cell.size() - at - 2));
     const bool derivative = open == '(' && at == 3 && cell.starts_with("der");  // of a state s, say
     if (is_index(unit) || derivative) continue;
-    if (open == '[' || is_unit(unit) || TimeFormat::of(unit).has_value())
-      return {std::string(trim(cell.substr(0, at))), std::string(unit)};
+    if (open == '[') return {std::string(trim(cell.substr(0, at))), std::string(unit_before_words(unit))};
+    if (is_unit_or_time(unit)) return {std::string(trim(cell.substr(0, at))), std::string(unit)};
   }
   for (const std::string_view between : {" / ", ", ", " in "}) {
     const std::size_t at = cell.rfind(between);

@@ -64,6 +64,32 @@ TEST_F(LoggerLayouts, UnitsStandFarAboveTheNamesWhereTheirRowSaysSo) {
     expect_three_rows(read(head + kRows, map_of("t", "ms")));
 }
 
+TEST_F(LoggerLayouts, UnitsInBracketsOfAnyKindAndBeforeWords) {
+  for (const char* head : {"t [ms seit Start];U [mV DC];x [mm, von oben]\n", "t [ms since start];U [mV];x [mm]\n",
+                           "t {ms};U {mV};x {mm}\n", "\"t {ms}\" ; \"U {mV}\" ; \"x {mm}\"\n"})
+    expect_three_rows(read(head + kRows));
+}
+
+TEST_F(LoggerLayouts, WhatSimulinkSaysOfItsColumns) {
+  for (const char* head : {"t;U;x\nUnit: ms;Unit: mV;Unit: mm\nType: double;Type: double;Type: single\n",
+                           "t;U;x\nType: double;Type: double;Type: double\nUnit: ms;Unit: mV;Unit: mm\nInterp: linear;"
+                           "Interp: linear;Interp: zoh\n"})
+    expect_three_rows(read(head + kRows));
+}
+
+/// Each column of values has one of times before it, or several share one, in milliseconds of the first sample.
+TEST_F(LoggerLayouts, WhatTwinCatScopeWritesAboveItsColumns) {
+  const std::string own =
+      "Name\tRig 3\nFile\tC:\\rig.svdx\nStarttime of export\t133500000000000000\tMontag, 4. Mai 2026\n\n"
+      "Name\tU\tName\tx\nSymbolComment\t\tSymbolComment\t\nData-Type\tREAL64\tData-Type\tREAL64\n"
+      "SampleTime[ms]\t500\tSampleTime[ms]\t500\nVariableSize\t8\tVariableSize\t8\nUnit\tmV\tUnit\tmm\n"
+      "Unit Offset\t0\tUnit Offset\t0\n\n0\t1\t0\t60\n500\t2\t500\t59\n1000\t4\t1000\t57\n";
+  expect_three_rows(read(own, map_of("column 1", "")));
+  const std::string shared =
+      "Name\tRig 3\n\nName\tU\tx\nSampleTime[ms]\t500\t500\nUnit\tmV\tmm\n\n0\t1\t60\n500\t2\t59\n1000\t4\t57\n";
+  expect_three_rows(read(shared, map_of("Time", "")));
+}
+
 TEST_F(LoggerLayouts, AMachineCalledByAUnitIsNone) {
   const Recording recording = read("Unit;A\nShift;2\nt [ms];U [mV];x [mm]\n" + kRows);
   expect_three_rows(recording);

@@ -75,6 +75,7 @@ struct MissingTerm {
   std::string state_unit;  ///< "m/s"
   LawAt what = {};         ///< the law that is drawn; id "" without one
   std::vector<double> time_s, state_value, demanded, band, law;
+  std::vector<double> path_state, path_law;  ///< the law itself along the simulation; not a number between windows
 };
 
 struct Power {

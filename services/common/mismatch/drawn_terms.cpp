@@ -7,17 +7,21 @@
 #include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/missing_term.hpp"
 #include "services/common/mismatch/regime.hpp"
+#include "services/common/mismatch/smooth_input.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
 
+// Of the law as it will be drawn: averaged. What changes faster cannot be read.
 double mean_square(const TermPath& path) {
+  if (path.contribution.empty()) return 0.0;
+  const std::vector<double> drawn = hat_means(make_knots(path.time_s), path.time_s, path.contribution);
   double sum = 0.0;
-  for (const double value : path.contribution) sum += value * value;
-  return path.contribution.empty() ? 0.0 : sum / static_cast<double>(path.contribution.size());
+  for (const double value : drawn) sum += value * value;
+  return sum / static_cast<double>(drawn.size());
 }
 
-// Windows of the recording in which the law does most, in the order of time.
+// Windows of the recording in which the law is read best, in the order of time.
 std::vector<std::size_t> windows_of_most(const std::vector<TermPath>& paths, const Data& data) {
   const auto recording_of = [&](std::size_t k) { return data.groups.empty() ? static_cast<int>(k) : data.groups[k]; };
   std::map<int, double> energy;
@@ -55,8 +59,8 @@ void draw_missing_terms(const FittedModel& baseline, const Trial& best, const Da
     if (drawn) {
       if (named)
         drawn->what = law_at(effect, simulation.plant());
-      else
-        drawn->law.clear();  // what the data demand there alone
+      else  // what the data demand there alone
+        for (auto* values : {&drawn->law, &drawn->path_state, &drawn->path_law}) values->clear();
       result.missing.push_back(std::move(*drawn));
     }
     for (FoundEffect& found : result.effects)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "services/common/mismatch/candidates.hpp"
@@ -83,6 +84,12 @@ Result<Columns> columns_of(const SimulatedPoint& at, const Knots& knots, const s
                  .residual = std::move(all.residual)};
 }
 
+void describe_law(const TermPath& path, const std::vector<double>& state, const Knots& knots, MissingTerm& term) {
+  term.law = hat_means(knots, path.time_s, path.contribution);
+  term.path_state = state;
+  term.path_law = path.contribution;
+}
+
 Status describe_sensor(const SimulatedPoint& at, std::size_t channel, const Law* law, const Knots& knots,
                        MissingTerm& term) {
   const PemRecording& part = at.problem->recordings[at.recording];
@@ -91,7 +98,7 @@ Status describe_sensor(const SimulatedPoint& at, std::size_t channel, const Law*
   std::vector<double> measured;
   for (const auto& signals : path->signals) measured.push_back(signals.front());
   term.state_value = hat_means(knots, path->time_s, measured);
-  if (law != nullptr) term.law = hat_means(knots, path->time_s, path->contribution);
+  if (law != nullptr) describe_law(*path, measured, knots, term);
   if (const auto* description = part.simulation->plant().find_channel(part.simulation->channels()[channel])) {
     term.unit = term.state_unit = description->unit;
     term.state = description->meaning;
@@ -106,7 +113,7 @@ Status describe_site(const SimulatedPoint& at, SiteKind kind, const Law* law, st
   std::vector<double> state;
   for (const auto& signals : path->signals) state.push_back(signals[signal]);
   term.state_value = hat_means(knots, path->time_s, state);
-  if (law != nullptr) term.law = hat_means(knots, path->time_s, path->contribution);
+  if (law != nullptr) describe_law(*path, state, knots, term);
   const PlantDescription& plant = at.problem->recordings[at.recording].simulation->plant();
   const SiteWords words = words_at(plant, term.element, kind);
   term.unit = words.unit;
@@ -157,8 +164,11 @@ Result<MissingTerm> missing_term(const FittedModel& without, const FittedModel* 
 }
 
 void append(MissingTerm& term, MissingTerm&& next) {
+  for (auto* path : {&term.path_state, &term.path_law})
+    if (!path->empty()) path->push_back(std::numeric_limits<double>::quiet_NaN());
   for (std::vector<double> MissingTerm::*values :
-       {&MissingTerm::time_s, &MissingTerm::state_value, &MissingTerm::demanded, &MissingTerm::band, &MissingTerm::law})
+       {&MissingTerm::time_s, &MissingTerm::state_value, &MissingTerm::demanded, &MissingTerm::band, &MissingTerm::law,
+        &MissingTerm::path_state, &MissingTerm::path_law})
     (term.*values).insert((term.*values).end(), (next.*values).begin(), (next.*values).end());
 }
 

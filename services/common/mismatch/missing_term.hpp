@@ -12,8 +12,8 @@
 //     trajectory far (the piston elsewhere, a valve shut that should be open), and for a law far from right, it shows
 //     time and direction, not size. Where the law reacts to the input itself (dry friction at rest takes up any force)
 //     the data say little, and the band is wide.
-//   - `demanded`, `law` and `state_value` are means over the same quarter of a second (the knot's hat), so that a jump
-//     is drawn by all as a ramp of this length.
+//   - `demanded`, `law` and `state_value` are means over the same time (the knot's hat), so that a jump is drawn by all
+//     as a ramp of this length. `path_state` and `path_law` are the law as it is.
 //   - `band` is 1.96 standard errors under noise of the assumed colour, raised by the root of what stays unexplained.
 //   - A constant that the recording's load takes up has no estimate: then the mean is that of the law, 0 without one,
 //     and `quantity` says "up to a constant".

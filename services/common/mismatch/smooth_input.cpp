@@ -12,7 +12,6 @@
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr double kUsualSpacing_s = 0.25;
 constexpr std::size_t kMostKnots = 121, kFewestKnots = 4, kSamplesPerKnot = 4;
 constexpr double kLevelShown = 0.02;  // share of a constant's effect that the recording's own unknowns leave
 constexpr double kJitter = 1e-10;     // of the mean diagonal: a knot that the data do not show
@@ -93,9 +92,7 @@ Knots::Place Knots::at(double t) const {
 
 Knots make_knots(const std::vector<double>& time_s) {
   const double duration_s = time_s.back() - time_s.front();
-  const auto usual = static_cast<std::size_t>(duration_s / kUsualSpacing_s) + 1;
-  const std::size_t most = std::min(kMostKnots, time_s.size() / kSamplesPerKnot);
-  const std::size_t count = std::max(std::min(usual, most), kFewestKnots);
+  const std::size_t count = std::clamp(time_s.size() / kSamplesPerKnot, kFewestKnots, kMostKnots);
   return {time_s.front(), duration_s / static_cast<double>(count - 1), count};
 }
 

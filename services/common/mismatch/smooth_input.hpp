@@ -30,7 +30,7 @@ struct Knots {
   [[nodiscard]] Place at(double t) const;
 };
 
-/// About one each quarter of a second, at most 121, at least four samples apart.
+/// 121 over the recording; fewer where they would be less than four samples apart.
 [[nodiscard]] Knots make_knots(const std::vector<double>& time_s);
 
 /// Means of samples of a function, weighed by the hat of each knot and by the time that each sample stands for.

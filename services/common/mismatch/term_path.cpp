@@ -70,8 +70,9 @@ Result<std::vector<double>> simulated_channel(const SimulatedPoint& at, const Mo
 // Signals between samples that are far apart change little more: a long record is not followed in finer steps than
 // this.
 double path_step_s(const PemRecording& part) {
-  constexpr double kLongestStep_s = 0.05, kSteps = 4000.0;
-  return std::max(kLongestStep_s, (part.time_s.back() - part.time_s.front()) / kSteps);
+  constexpr double kUsualStep_s = 0.05, kFewestSteps = 480.0, kMostSteps = 4000.0;
+  const double duration_s = part.time_s.back() - part.time_s.front();
+  return std::clamp(kUsualStep_s, duration_s / kMostSteps, duration_s / kFewestSteps);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "sealwatch/model/physics.hpp"
+#include "services/common/mismatch/drawn_terms.hpp"
 #include "services/common/mismatch/regime.hpp"
 #include "services/common/mismatch/smooth_input.hpp"
 #include "tests/unit/mismatch/simulated_test.hpp"
@@ -114,6 +115,30 @@ TEST(MissingTerm, OfCoulombFrictionIsItsForceOverTime) {
               StartsWith("moving, both directions, "));
   RecordProperty("within", std::to_string(demanded.within));
   RecordProperty("relative_rms", std::to_string(demanded.relative_rms));
+}
+
+TEST(MissingTerm, IsDrawnOverTheRecordingInWhichItCanBeRead) {
+  const Law* law = find_law("coulomb_friction", {"F_c", "v_s"}).value();
+  const AssetConfig truth = with_law(plant(), *law, "piston", std::array{1500.0, 1e-4});
+  TimeSeries rocking = standard_pst(truth, 100.0);
+  for (Series& series : rocking.channels)
+    for (std::size_t k = 0; series.name == "motor_voltage" && k < series.values.size(); ++k)
+      series.values[k] = k / 10 % 2 == 0 ? 6.0 : -6.0;  // five times a second: faster than the term can be followed
+  Data data = data_of(simulated(truth, rocking, 1.0));
+  data.names = {"rocking", "stroke"};
+  data.samples.push_back(simulated_test(truth, 1.0));
+  const FittedModel without = fit_model(plant(), data, nullptr, 1).value();
+  const Trial best{.effects = {{law, "piston"}},
+                   .model = std::make_shared<FittedModel>(fit_model(truth, data, &without, 1).value())};
+  Explanation result;
+  result.effects.push_back({.what = {.id = law->id, .form = {}, .element = "piston", .law = {}, .meaning = {}}});
+  draw_missing_terms(without, best, data, true, result);
+  ASSERT_EQ(result.missing.size(), 1U);
+  const MissingTerm& term = result.missing.front();
+  EXPECT_EQ(term.recording, "stroke");
+  ASSERT_EQ(term.path_state.size(), term.path_law.size());
+  for (std::size_t k = 0; k < term.path_law.size(); ++k)  // the law itself: no mean of both sides of a jump
+    if (std::abs(term.path_state[k]) > 5e-4) EXPECT_NEAR(std::abs(term.path_law[k]), 1500.0, 50.0);
 }
 
 TEST(MissingTerm, DepartsFromALawThatIsWrong) {

@@ -101,6 +101,8 @@ MissingTerm missing_term() {
     term.demanded.push_back(friction(v) + 250.0 * noise(random));
     term.band.push_back(500.0);
   }
+  term.path_state = term.state_value;
+  term.path_law = term.law;
   return term;
 }
 

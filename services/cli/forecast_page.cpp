@@ -61,7 +61,8 @@ report::Scatter tests_of(const std::vector<ConditionSample>& samples, Ink ink, c
 }
 
 report::Intervals intervals_of(const std::vector<ConditionSample>& samples) {
-  report::Intervals intervals{.x = {}, .y = {}, .low = {}, .high = {}, .ink = Ink::first, .label = "test, 95 %"};
+  report::Intervals intervals{
+      .x = {}, .y = {}, .low = {}, .high = {}, .ink = Ink::first, .label = "test, 95 % interval"};
   for (const ConditionSample& sample : samples) {
     intervals.x.push_back(calendar_year(sample.time));
     intervals.y.push_back(kPercent * sample.condition);
@@ -80,8 +81,8 @@ std::pair<double, double> view_of(const ForecastQuestion& question, const std::v
 }
 
 void add_forecast_band(const std::vector<ConditionForecast>& conditions, double threshold, Plot& plot) {
-  report::Line middle{.x = {}, .y = {}, .ink = Ink::second, .label = "forecast"};
-  report::Band band{.x = {}, .low = {}, .high = {}, .ink = Ink::second, .label = "forecast, 95 %"};
+  report::Line middle{.x = {}, .y = {}, .ink = Ink::second};
+  report::Band band{.x = {}, .low = {}, .high = {}, .ink = Ink::second, .label = "forecast, 95 % interval"};
   for (const ConditionForecast& at : conditions) {
     const double half = quantile_factor(at.degrees_of_freedom, 0.975) * at.condition_std;
     if (at.condition + half < threshold - 0.1) break;  // long failed: nothing to see there
@@ -120,7 +121,7 @@ Plot course(const ForecastQuestion& question, const ForecastPanel::Answer& answe
             .y = {.label = "condition", .unit = "%"},
             .marks = {},
             .width = width,
-            .height = 300};
+            .height = 315};
   if (!conditions.empty()) add_forecast_band(conditions, threshold, plot);
   plot.marks.emplace_back(intervals_of(answer.used));
   plot.marks.emplace_back(tests_of(answer.used, Ink::first, ""));
@@ -135,7 +136,7 @@ Plot course(const ForecastQuestion& question, const ForecastPanel::Answer& answe
     plot.marks.emplace_back(report::Line{.x = {year(primary.rul_p10_months), year(primary.rul_p90_months)},
                                          .y = {kPercent * threshold, kPercent * threshold},
                                          .ink = Ink::bad,
-                                         .label = "end of life, 80 %",
+                                         .label = "end of life, 80 % interval",
                                          .width = 5.0});
   }
   add_dates(question, plot);

@@ -43,7 +43,6 @@ struct Route {
   std::string_view also = {};  ///< a topic of the same messages with a right of its own
 };
 
-/// The short ones first: they get the lanes next to the boxes.
 std::vector<Route> all_routes() {
   return {{Topic::test_features, manipulation, {health}},
           {Topic::health_report, health, {advice}},
@@ -71,9 +70,8 @@ void expect_all_topics(const std::array<Box, kNodes>& boxes, const std::vector<R
     throw std::runtime_error("the picture of the layers lacks a topic: add it to the boxes or routes");
 }
 
-// The step leaves a topic's name room between the lines of one box and those of the next.
-constexpr double kStep = 100.0, kHeight = 52.0, kWidth = 400.0, kLeft = 20.0, kTop = 14.0;
-constexpr double kLane = 27.0, kPort = 10.4;  // between lines side by side
+constexpr double kStep = 84.0, kHeight = 52.0, kWidth = 380.0, kLeft = 20.0, kTop = 14.0;
+constexpr double kLine = 16.0;  // of words beside a box
 
 constexpr int kScreenWidth = 1180;  // of the pages
 
@@ -98,106 +96,43 @@ std::string arrow(double x, double from, double to, const std::string& ink = "--
          std::to_string(to) + 'L' + std::to_string(x + 5.0) + shoulder + "Z\" style=\"fill:var(" + ink + ")\"/>\n";
 }
 
-/// Of a topic's name at 11 px.
-double width_of(std::string_view name) {
-  constexpr std::string_view kWide = "mw", kNarrow = "fijlrt";
-  double pixels = 0.0;
-  for (const char letter : name)
-    pixels += kWide.find(letter) != kWide.npos ? 9.9 : kNarrow.find(letter) != kNarrow.npos ? 3.9 : 6.5;
-  return pixels;
+/// Topics that a box writes or reads beside those of the arrows.
+std::string topics_of(const std::vector<Route>& routes, const auto& chosen) {
+  std::string text;
+  for (const Route& route : routes)
+    if (chosen(route)) text.append(text.empty() ? "" : ", ").append(name_of(route.topic)).append(route.also);
+  return text;
 }
 
-/// Routes on the right of the boxes: each topic in a lane of its own, with an arrow into each of its readers.
-class Lanes {
- public:
-  explicit Lanes(const std::vector<Route>& routes) {
-    for (const Route& route : routes) {
-      ++ports_[route.from];
-      for (const Node node : route.to) ++ports_[node];
-    }
-  }
-  void draw(const Route& route, Canvas& canvas) {
-    const std::string ink = route.from == operators ? "--second" : "--first";
-    const double begin = next_port(route.from);
-    double high = begin, low = begin;
-    std::vector<double> ends;
-    for (const Node node : route.to) {
-      ends.push_back(next_port(node));
-      high = std::min(high, ends.back()), low = std::max(low, ends.back());
-    }
-    const double lane = kLeft + kWidth + kLane * (1.0 + static_cast<double>(free_lane(high, low)));
-    std::string path =
-        "M" + at(kLeft + kWidth) + at(begin) + "H" + at(lane) + "M" + at(lane) + at(high) + "V" + at(low);
-    std::string heads;
-    crossings_.push_back({.lane = lane, .height = begin});
-    for (const double end : ends) {
-      crossings_.push_back({.lane = lane, .height = end});
-      path += "M" + at(lane) + at(end) + "H" + at(kLeft + kWidth + 6.0);
-      heads += "M" + at(kLeft + kWidth) + at(end) + "l8-4v8Z";
-    }
-    canvas.raw("<path d=\"" + path + "\" style=\"fill:none;stroke:var(" + ink + ");stroke-width:1.4\"/>\n<path d=\"" +
-               heads + "\" style=\"fill:var(" + ink + ")\"/>\n");
-    names_.push_back({.text = std::string(name_of(route.topic)).append(route.also),
-                      .ink = ink,
-                      .lane = lane,
-                      .high = high,
-                      .low = low});
-  }
-  /// The topics' names, to be drawn over all lines: each beside its lane where the fewest lines pass through it.
-  [[nodiscard]] std::string names() const {
-    std::string svg;
-    for (const Name& name : names_)
-      svg += "<text class=\"named\" text-anchor=\"middle\" transform=\"translate(" + at(name.lane + 12.0) +
-             at(clear_height(name)) + ") rotate(-90)\" style=\"fill:var(" + name.ink + ")\">" + name.text + "</text>\n";
-    return svg;
-  }
-
- private:
-  struct Name {
-    std::string text, ink;
-    double lane, high, low;
+/// Up to three lines on the right of a box whose top is `y`: what it also reads, gets from people, and also sends.
+void draw_other_topics(Node node, double y, const std::vector<Route>& routes, Canvas& canvas) {
+  const auto read = [&](const Route& route) { return std::ranges::find(route.to, node) != route.to.end(); };
+  const auto by_people = [](const Route& route) { return route.from == operators; };
+  // What the arrows pass on needs no second word.
+  const std::array<Box, kNodes> boxes = all_boxes();
+  const auto passed_on = [&](const Route& route) {
+    return std::ranges::find(boxes[route.from].next, route.topic) != boxes[route.from].next.end();
   };
-  /// A line from the boxes to a lane.
-  struct Crossing {
-    double lane, height;
+  struct Words {
+    std::string_view begin, ink;
+    std::string topics;
   };
-
-  [[nodiscard]] double clear_height(const Name& name) const {
-    constexpr double kOverhang = 12.0, kClear = 3.0;
-    const double half = 0.5 * width_of(name.text) + kClear;
-    const double middle = 0.5 * (name.high + name.low);
-    const auto passing = [&](double height) {
-      return std::ranges::count_if(crossings_, [&](const Crossing& line) {
-        return line.lane > name.lane + 4.0 && std::abs(line.height - height) < half;
-      });
-    };
-    double best = middle;
-    for (double away = 1.0; name.high + half <= middle - away + kOverhang; away += 1.0)
-      for (const double height : {middle - away, middle + away})
-        if (passing(height) < passing(best)) best = height;
-    return best;
+  const std::array<Words, 3> lines{{
+      {"also reads ", "--first", topics_of(routes, [&](const Route& r) { return read(r) && !by_people(r); })},
+      {"from people: ", "--second", topics_of(routes, [&](const Route& r) { return read(r) && by_people(r); })},
+      {"also sends ", node == operators ? "--second" : "--muted",
+       topics_of(routes, [&](const Route& r) { return r.from == node && !passed_on(r); })},
+  }};
+  const auto count = std::ranges::count_if(lines, [](const Words& words) { return !words.topics.empty(); });
+  double baseline = y + 0.5 * kHeight + 4.0 - 0.5 * kLine * static_cast<double>(count - 1);
+  for (const Words& words : lines) {
+    if (words.topics.empty()) continue;
+    canvas.raw("<text x=\"" + std::to_string(kLeft + kWidth + 16.0) + "\" y=\"" + std::to_string(baseline) +
+               "\" style=\"fill:var(" + std::string(words.ink) + ")\">" + std::string(words.begin) + words.topics +
+               "</text>\n");
+    baseline += kLine;
   }
-  static std::string at(double pixels) { return std::to_string(std::lround(pixels)) + ' '; }
-  double next_port(Node node) {
-    const double apart = std::min(kPort, kHeight / static_cast<double>(ports_[node] + 1));
-    const double from_middle = static_cast<double>(++used_[node]) - 0.5 * static_cast<double>(ports_[node] + 1);
-    return kTop + kStep * static_cast<double>(node) + 0.5 * kHeight + apart * from_middle;
-  }
-  /// The first in which nothing else is between the two heights.
-  std::size_t free_lane(double high, double low) {
-    std::size_t lane = 0;
-    const auto apart = [&](const std::pair<double, double>& other) { return low < other.first || high > other.second; };
-    while (lane < taken_.size() && !std::ranges::all_of(taken_[lane], apart)) ++lane;
-    if (lane == taken_.size()) taken_.emplace_back();
-    taken_[lane].emplace_back(high, low);
-    return lane;
-  }
-
-  std::vector<Name> names_;
-  std::vector<Crossing> crossings_;
-  std::array<int, kNodes> ports_{}, used_{};
-  std::vector<std::vector<std::pair<double, double>>> taken_;
-};
+}
 
 }  // namespace
 
@@ -215,9 +150,12 @@ std::string layers() {
   constexpr double kMiddle = kLeft + 0.5 * kWidth, kBack = kLeft + 0.7 * kWidth;
   constexpr double kWords = 0.5 * (kStep - kHeight) + 4.0;  // under a box, beside its arrow
   const std::array<Box, kNodes> boxes = all_boxes();
-  Canvas canvas("The six layers with their topics", 700, static_cast<int>(kStep * static_cast<double>(kNodes)) + 24);
+  const std::vector<Route> routes = all_routes();
+  expect_all_topics(boxes, routes);
+  Canvas canvas("The six layers with their topics", 860, static_cast<int>(kStep * static_cast<double>(kNodes)) + 22);
   double y = kTop;
-  for (const Box& one : boxes) {
+  for (std::size_t node = 0; node < kNodes; ++node, y += kStep) {
+    const Box& one = boxes[node];
     canvas.raw(box(kLeft, y, kWidth, kHeight));
     canvas.text(one.name, kMiddle, y + 22.0, "title", "middle");
     canvas.text(one.says, kMiddle, y + 39.0, "tick", "middle");
@@ -229,16 +167,10 @@ std::string layers() {
       canvas.raw(arrow(kBack, y + kStep, y + kHeight, "--second"));
       canvas.text(joined(one.back), kBack + 14.0, y + kHeight + kWords);
     }
-    y += kStep;
+    draw_other_topics(static_cast<Node>(node), y, routes, canvas);
   }
-  const std::vector<Route> routes = all_routes();
-  expect_all_topics(boxes, routes);
-  canvas.text(
-      "among the services: " + joined({kAmongServices.begin(), kAmongServices.end()}).append(kAlsoAmongServices), kLeft,
-      y, "tick");
-  Lanes lanes(routes);
-  for (const Route& route : routes) lanes.draw(route, canvas);
-  canvas.raw(lanes.names());
+  canvas.text("all services: " + joined({kAmongServices.begin(), kAmongServices.end()}).append(kAlsoAmongServices),
+              kLeft, y, "tick");
   return canvas.svg();
 }
 

@@ -1,6 +1,7 @@
 // Pictures of recordings: one partial stroke with its phases, what it shows of the valve, and what the position loop
 // hides.
 #include <algorithm>
+#include <utility>
 
 #include "sealwatch/signal/test_record.hpp"
 #include "services/common/report/plot.hpp"
@@ -94,6 +95,7 @@ std::string valve_signature(const Recording& recording) {
   const auto [least, largest] = std::ranges::minmax(position);
   const double room = 0.02 * (largest - least);
   plot.x.range = {least - room, largest + room};
+  std::string at_rest = "rest and hold";  // in the legend once
   for (const signal::MotionPhase& phase : test.phases()) {
     const signal::Range range = test.range(phase);
     Line line{.label = name_of(phase.kind)};
@@ -114,7 +116,7 @@ std::string valve_signature(const Recording& recording) {
         break;
       default:
         line.ink = Ink::muted;
-        line.label.clear();
+        line.label = std::exchange(at_rest, std::string());
     }
     plot.marks.emplace_back(std::move(line));
   }

@@ -196,9 +196,9 @@ TEST_F(Commands, ForecastWritesAPageWithTheDecision) {
   EXPECT_THAT(text.output, ::testing::AllOf(HasSubstr("expected cost"), HasSubstr("cheapest"), HasSubstr(page)));
   std::ostringstream html;
   html << std::ifstream(page).rdbuf();
-  for (const char* part :
-       {"</html>", "Condition of the piston seal", "end of life, 80 %", "Probability of failure before the replacement",
-        "Expected cost of the replacement", "wait for failure", "cheapest", "state space 240"})
+  for (const char* part : {"</html>", "Condition of the piston seal", "end of life, 80 % interval",
+                           "Probability of failure before the replacement", "Expected cost of the replacement",
+                           "wait for failure", "cheapest", "state space 240"})
     EXPECT_THAT(html.str(), HasSubstr(part));
   for (const char* outside : {"src=", "href=", "<link", "@import", "url("})
     EXPECT_EQ(html.str().find(outside), std::string::npos) << "not self-contained: " << outside;
@@ -436,6 +436,13 @@ std::set<std::string> options_in(const std::string& text) {
   const std::regex option(R"((?:^|\n) +(?:-\w,)?(--[a-z-]+))");
   for (std::sregex_iterator one(text.begin(), text.end(), option), end; one != end; ++one) options.insert((*one)[1]);
   return options;
+}
+
+TEST_F(Commands, HelpIsACommandToo) {
+  EXPECT_EQ(run({"sealwatch", "help"}).output, run({"sealwatch", "--help"}).output);
+  const Finished help = run({"sealwatch", "help", "fit"});
+  EXPECT_EQ(help.status, 0);
+  EXPECT_EQ(help.output, run({"sealwatch", "fit", "--help"}).output);
 }
 
 /// Options in groups are options too.

@@ -26,6 +26,7 @@ struct LegendEntry {
   bool dashed = false;
   bool area = false;
   bool dot = false;
+  bool interval = false;  ///< a dot on an upright line
 };
 
 /// Letters of UTF-8 text.
@@ -45,7 +46,8 @@ std::vector<LegendEntry> legend_of(const Plot& plot) {
             if (one.label.empty()) return;
             LegendEntry entry{.ink = one.ink, .label = one.label};
             if constexpr (std::is_same_v<Kind, Line>) entry.dashed = one.dashed;
-            entry.dot = std::is_same_v<Kind, Scatter>;
+            entry.dot = std::is_same_v<Kind, Scatter> || std::is_same_v<Kind, Intervals>;
+            entry.interval = std::is_same_v<Kind, Intervals>;
             entry.area = std::is_same_v<Kind, Band> || std::is_same_v<Kind, Bars> || std::is_same_v<Kind, Boxes>;
             entries.push_back(std::move(entry));
           }
@@ -66,6 +68,15 @@ std::string sample_dot(const LegendEntry& entry, double x, double baseline) {
   std::string svg = "<circle class=\"";
   svg.append(ink_class(entry.ink)).append(" fill\" cx=\"").append(pixel(x + 0.5 * kSample));
   return svg.append("\" cy=\"").append(pixel(baseline - 4.0)).append("\" r=\"2.5\"/>\n");
+}
+
+/// A dot on its interval.
+std::string sample_interval(const LegendEntry& entry, double x, double baseline) {
+  const std::string middle = pixel(x + 0.5 * kSample);
+  std::string svg = "<line class=\"";
+  svg.append(ink_class(entry.ink)).append(" stroke\" x1=\"").append(middle).append("\" x2=\"").append(middle);
+  svg.append("\" y1=\"").append(pixel(baseline - 9.0)).append("\" y2=\"").append(pixel(baseline + 1.0));
+  return svg.append("\"/>\n").append(sample_dot(entry, x, baseline));
 }
 
 std::string sample_line(const LegendEntry& entry, double x, double baseline) {
@@ -89,7 +100,9 @@ double draw_legend(const std::vector<LegendEntry>& entries, double first_baselin
     double x = width - kRight - row + 12.0;
     for (; begin < end; ++begin) {
       const LegendEntry& entry = entries[begin];
-      svg += entry.dot ? sample_dot(entry, x, baseline) : sample_line(entry, x, baseline);
+      svg += entry.interval ? sample_interval(entry, x, baseline)
+             : entry.dot    ? sample_dot(entry, x, baseline)
+                            : sample_line(entry, x, baseline);
       svg += text_at(x + kSample + 4.0, baseline, "tick", "start", entry.label);
       x += width_of(entry);
     }

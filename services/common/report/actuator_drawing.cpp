@@ -64,7 +64,9 @@ std::string Colouring::part(const Part& part) const {
   svg.append("<g class=\"symbol\">").append(part.symbol).append("</g>\n");
   // A halo keeps the words legible on a strong colour, light and dark.
   const std::string_view strong = part.inside ? "title named" : "title";
-  svg += text_at(part.label_x, part.label_y, part.anchor, share >= kShown ? strong : "", text::in_words(part.element));
+  const std::string name = part.label.empty() ? text::in_words(part.element) : std::string(part.label);
+  const double label_y = part.label_y + (share >= kShown ? 0.0 : part.lower_alone);
+  svg += text_at(part.label_x, label_y, part.anchor, share >= kShown ? strong : "", name);
   if (share >= kShown)
     svg += text_at(part.label_x, part.label_y + 17.0, part.anchor, part.inside ? strong : "share",
                    text::percent_text(share));

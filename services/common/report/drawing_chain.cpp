@@ -1,101 +1,112 @@
-// Any plant: its elements as boxes in the order of its description, five to a row, and its sensors below.
+// Any plant: its elements as boxes in the order of its description, up to five to a row, and its sensors below.
 #include "services/common/report/drawing_parts.hpp"
 #include "services/common/report/plot_scale.hpp"
+#include "services/common/text/format.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::report {
 namespace {
 
-constexpr std::size_t kPerRow = 5;
-constexpr double kBoxWidth = 150.0;
+constexpr std::size_t kMostPerRow = 5;
+constexpr double kEdge = 10.0;
+constexpr double kLeastWidth = 150.0;  ///< of a box
+constexpr double kMostWidth = 240.0;
+constexpr double kLetter = 8.2;  ///< mean width of a letter of a name, and
+constexpr double kMargin = 24.0;
 constexpr double kBoxHeight = 56.0;
 constexpr double kPillHeight = 38.0;
 constexpr double kPillStepY = 50.0;
-constexpr double kStepX = 190.0;
+constexpr double kGap = 40.0;  ///< between boxes of a row
 constexpr double kStepY = 84.0;
+constexpr double kLowerAlone = 7.0;
+constexpr double kWordsHeight = 22.0;  ///< of the line above the sensors
 constexpr std::string_view kSensor = "sensor:";
 
-std::string rectangle(double x, double y, double height, double corner) {
-  return std::string("<rect x=\"")
-      .append(pixel(x))
-      .append("\" y=\"")
-      .append(pixel(y))
-      .append("\" width=\"")
-      .append(pixel(kBoxWidth))
-      .append("\" height=\"")
-      .append(pixel(height))
-      .append("\" rx=\"")
-      .append(pixel(corner))
-      .append("\"/>");
+/// A row of equal boxes.
+struct Grid {
+  double width = kLeastWidth;
+  std::size_t per_row = kMostPerRow;
+  [[nodiscard]] double left(std::size_t place) const {
+    return kEdge + (width + kGap) * static_cast<double>(place % per_row);
+  }
+  [[nodiscard]] std::size_t row(std::size_t place) const { return place / per_row; }
+  [[nodiscard]] double rows(std::size_t places) const { return static_cast<double>((places + per_row - 1) / per_row); }
+  [[nodiscard]] double right() const { return left(per_row - 1) + width + kEdge; }
+};
+
+std::string label_of(std::string_view element) {
+  return text::in_words(element.starts_with(kSensor) ? element.substr(kSensor.size()) : element);
 }
 
-/// From one box to the next in its row.
-std::string arrow(double x, double y) {
-  const std::string from = pixel(x + kBoxWidth);
-  const std::string to = pixel(x + kStepX);
-  const std::string at = pixel(y + kBoxHeight / 2.0);
-  return std::string("<path class=\"wire\" d=\"M")
-      .append(from)
-      .append(" ")
-      .append(at)
-      .append("H")
-      .append(to)
-      .append("\"/>\n");
+/// As wide as the longest name asks for, and no more columns than there are boxes.
+Grid grid_for(const std::vector<std::string>& elements, const std::vector<std::string>& sensors) {
+  std::size_t longest = 0;
+  for (const auto* names : {&elements, &sensors})
+    for (const std::string& name : *names) longest = std::max(longest, label_of(name).size());
+  return {.width = std::clamp(kLetter * static_cast<double>(longest) + kMargin, kLeastWidth, kMostWidth),
+          .per_row = std::clamp<std::size_t>(std::max(elements.size(), sensors.size()), 1, kMostPerRow)};
+}
+
+std::string rectangle(double x, double y, double width, double height, double corner) {
+  return text::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" rx=\"{}\"/>", pixel(x), pixel(y),
+                      pixel(width), pixel(height), pixel(corner));
+}
+
+std::string element_box(const Colouring& colouring, const Grid& grid, const std::string& element, std::size_t place) {
+  const double x = grid.left(place), y = kEdge + kStepY * static_cast<double>(grid.row(place));
+  std::string svg;
+  if (place % grid.per_row != 0)  // from the box before
+    svg = text::format("<path class=\"wire\" d=\"M{} {}H{}\"/>\n", pixel(x - kGap), pixel(y + kBoxHeight / 2.0),
+                       pixel(x));
+  const std::string name = label_of(element), shape = rectangle(x, y, grid.width, kBoxHeight, 5.0);
+  return svg.append(colouring.part({.element = element,
+                                    .shape = shape,
+                                    .symbol = {},
+                                    .label_x = x + grid.width / 2.0,
+                                    .label_y = y + 26.0,
+                                    .inside = true,
+                                    .lower_alone = kLowerAlone,
+                                    .label = name}));
 }
 
 /// A sensor: a box with round ends, faint where the channel is not recorded.
-std::string pill(const Colouring& colouring, const std::string& element, double x, double y) {
-  const std::string shape = rectangle(x, y, kPillHeight, kPillHeight / 2.0);
+std::string pill(const Colouring& colouring, const Grid& grid, const std::string& element, std::size_t place,
+                 double top) {
+  const double x = grid.left(place), y = top + kPillStepY * static_cast<double>(grid.row(place));
+  const std::string name = label_of(element), shape = rectangle(x, y, grid.width, kPillHeight, kPillHeight / 2.0);
   const bool seen = colouring.is_recorded(std::string_view(element).substr(kSensor.size()));
   return std::string(seen ? "<g>\n" : "<g opacity=\".4\">\n")
       .append(colouring.part({.element = element,
                               .shape = shape,
                               .symbol = {},
-                              .label_x = x + kBoxWidth / 2.0,
+                              .label_x = x + grid.width / 2.0,
                               .label_y = y + 17.0,
-                              .inside = true}))
+                              .inside = true,
+                              .lower_alone = kLowerAlone,
+                              .label = name}))
       .append("</g>\n");
 }
-
-std::size_t row_of(std::size_t place) { return place / kPerRow; }
-
-std::size_t rows_for(std::size_t places) { return (places + kPerRow - 1) / kPerRow; }
 
 }  // namespace
 
 std::string chain_drawing(const Colouring& colouring) {
-  std::string wires;
+  std::vector<std::string> elements, sensors;
+  for (const ElementDescription& element : colouring.plant().elements)
+    (element.name.starts_with(kSensor) ? sensors : elements).push_back(element.name);
+  const Grid grid = grid_for(elements, sensors);
   std::string boxes;
-  std::size_t count = 0;
-  std::vector<std::string> sensors;
-  for (const ElementDescription& element : colouring.plant().elements) {
-    if (element.name.starts_with(kSensor)) {
-      sensors.push_back(element.name);
-      continue;
-    }
-    const double x = 10.0 + kStepX * static_cast<double>(count % kPerRow);
-    const double y = 10.0 + kStepY * static_cast<double>(row_of(count));
-    if (count % kPerRow != 0) wires += arrow(x - kStepX, y);
-    const std::string shape = rectangle(x, y, kBoxHeight, 5.0);
-    boxes += colouring.part({.element = element.name,
-                             .shape = shape,
-                             .symbol = {},
-                             .label_x = x + kBoxWidth / 2.0,
-                             .label_y = y + 26.0,
-                             .inside = true});
-    ++count;
+  for (std::size_t k = 0; k < elements.size(); ++k) boxes += element_box(colouring, grid, elements[k], k);
+  double bottom = kEdge + kStepY * grid.rows(elements.size());
+  if (!sensors.empty()) {
+    boxes += text::format("<text x=\"{}\" y=\"{}\">sensors</text>\n", pixel(kEdge), pixel(bottom));
+    bottom += kWordsHeight - kEdge;
+    for (std::size_t k = 0; k < sensors.size(); ++k) boxes += pill(colouring, grid, sensors[k], k, bottom);
+    bottom += kPillStepY * grid.rows(sensors.size());
   }
-  const double rows = static_cast<double>(rows_for(count));
-  const double sensors_y = 10.0 + kStepY * rows;
-  for (std::size_t k = 0; k < sensors.size(); ++k)
-    boxes += pill(colouring, sensors[k], 10.0 + kStepX * static_cast<double>(k % kPerRow),
-                  sensors_y + kPillStepY * static_cast<double>(row_of(k)));
-  const std::string height = pixel(sensors_y + kPillStepY * static_cast<double>(rows_for(sensors.size())));
-  return std::string("<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" class=\"drawing\" width=\"960\" height=\"")
-      .append(height)
-      .append("\" viewBox=\"0 0 960 ")
-      .append(height)
-      .append("\">\n<title>Where the mismatch sits in the plant</title>\n")
-      .append(wires)
+  return text::format(
+             "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" class=\"drawing\" width=\"{0}\" "
+             "height=\"{1}\" viewBox=\"0 0 {0} {1}\">\n<title>Where the mismatch sits in the plant</title>\n",
+             pixel(grid.right()), pixel(bottom))
       .append(boxes)
       .append("</svg>\n");
 }

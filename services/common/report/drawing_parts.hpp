@@ -18,7 +18,9 @@ struct Part {
   std::string_view symbol;
   double label_x = 0.0, label_y = 0.0;
   std::string_view anchor = "middle";
-  bool inside = false;  ///< the name stands in the shape, whose colour may be strong
+  bool inside = false;          ///< the name stands in the shape, whose colour may be strong
+  double lower_alone = 0.0;     ///< how much lower the name stands without a probability below it
+  std::string_view label = {};  ///< the name as it is shown; else the element's
 };
 
 class Colouring {

@@ -74,8 +74,9 @@ int CommandLine::run(int argc, char** argv) {
     std::cerr << overview();
     return kBadInput;
   }
+  if (std::string_view(argv[1]) == "help") return help(argc, argv);
   const std::vector<std::string> known = commands();
-  if (argc > 1 && argv[1][0] != '-' && std::ranges::find(known, argv[1]) == known.end()) return unknown(argv[1]);
+  if (argv[1][0] != '-' && std::ranges::find(known, argv[1]) == known.end()) return unknown(argv[1]);
   arguments_.assign(argv + 1, argv + argc + 1);
   try {
     app_.parse(argc, argv);
@@ -85,6 +86,16 @@ int CommandLine::run(int argc, char** argv) {
     return app_.exit(error) == 0 ? kOk : kBadInput;
   }
   return chosen_();
+}
+
+/// "sealwatch help fit" is "sealwatch fit --help".
+int CommandLine::help(int argc, char** argv) {
+  std::string option = "--help";
+  std::vector<char*> words{argv[0]};
+  words.insert(words.end(), argv + 2, argv + argc);
+  words.push_back(option.data());
+  words.push_back(nullptr);
+  return run(argc, words.data());
 }
 
 CLI::App* CommandLine::command(const std::string& name, const std::string& meaning, const std::string& example,

@@ -47,6 +47,8 @@ class CommandLine {
 
   CLI::App app_;
   std::string group_;
+  int help(int argc, char** argv);
+
   std::vector<char*> arguments_;
   std::function<int()> chosen_;
 };

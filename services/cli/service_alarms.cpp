@@ -67,7 +67,7 @@ std::string begin_of(const HeardAlarm& heard, UtcTime now) {
     case AlarmState::acknowledged:
       return "ALARM, acknowledged by " + entry.acknowledged_by;
     case AlarmState::returned:
-      return "RETURNED " + to_the_second({entry.ended_ns}) + ", unacknowledged";
+      return "ENDED " + to_the_second({entry.ended_ns}) + ", nobody has acknowledged it";
     case AlarmState::shelved:
       return "SHELVED until " + to_the_second({entry.shelved_until_ns}) + " by " + entry.shelved_by + ", " +
              entry.shelved_reason;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 
 #include "sealwatch/model/plant_description.hpp"
 #include "services/common/report/explanation_sections.hpp"
@@ -17,8 +18,8 @@ using mismatch::Explanation;
 using mismatch::ParameterShift;
 using mismatch::Power;
 
-constexpr double kClearShift = 3.0;  ///< standard errors
-constexpr double kAbsorbed = 0.9;    ///< share from which an effect hides behind the free parameters
+constexpr double kClearShift = 3.0;     ///< standard errors
+constexpr double kInseparable = 0.999;  ///< share from which an effect is a change of the fitted parameters
 
 /// Shift in standard errors of the difference; NaN where neither is known.
 double shift_in_errors(const ParameterShift& shift) {
@@ -73,11 +74,23 @@ bool could_hide(const Power& power) {
          (power.significant > 0.0 && power.minimum_detectable > power.significant);
 }
 
-std::string power_words(const Power& power) {
-  if (!std::isfinite(power.minimum_detectable)) return "cannot be detected in these recordings";
-  if (could_hide(power)) return "a significant one could go undetected";
-  return power.absorbed_share > kAbsorbed ? "mostly absorbed by the free parameters, but detectable"
-                                          : "would be detected";
+/// What an effect would come to in these recordings.
+enum class Visible { seen, as_a_parameter, not_seen };
+
+/// An effect that the fitted parameters imitate altogether is not missing from the model: it is in their values.
+Visible visible(const Power& power) {
+  if (!could_hide(power)) return Visible::seen;
+  return power.absorbed_share > kInseparable ? Visible::as_a_parameter : Visible::not_seen;
+}
+
+Table power_table(const std::vector<Power>& all, Visible which) {
+  Table table({"law", "element", ">smallest visible", ">matters from", ">absorbed"});
+  for (const Power& power : all)
+    if (visible(power) == which)
+      table.row({law_name(power.what), element_name(power.what.element), detectable(power),
+                 power.significant > 0.0 ? text::readable(power.significant, power.unit, 2) : "–",
+                 text::percent_text(power.absorbed_share)});
+  return table;
 }
 
 }  // namespace
@@ -176,35 +189,30 @@ std::string prognosis_section(const Explanation& explanation) {
 
 std::string power_section(const Explanation& explanation) {
   if (explanation.power.empty()) return {};
-  const std::vector<std::string> columns = {"law",       "element", ">minimum detectable", ">significant from",
-                                            ">absorbed", ""};
-  Table blind(columns);
-  Table seen(columns);
-  std::size_t blind_count = 0;
-  for (const Power& power : explanation.power) {
-    const bool unseen = could_hide(power);
-    if (unseen) ++blind_count;
-    (unseen ? blind : seen)
-        .row({law_name(power.what), element_name(power.what.element), detectable(power),
-              power.significant > 0.0 ? text::readable(power.significant, power.unit, 2) : "–",
-              text::percent_text(power.absorbed_share), power_words(power)});
+  std::map<Visible, std::size_t> count;
+  for (const Power& power : explanation.power) ++count[visible(power)];
+  const auto effects = [&](Visible which) { return std::to_string(count[which]); };
+  std::string told = effects(Visible::seen) + " of " + std::to_string(explanation.power.size()) +
+                     " effects would be seen as soon as they matter";
+  std::string html = paragraph(
+      "Smallest visible: the size that these recordings reveal 80 % of the time, with 1 % false alarms. Absorbed: the "
+      "share of an effect that the fitted parameters would imitate.",
+      "small muted");
+  if (count[Visible::not_seen] > 0) {
+    told += ", " + effects(Visible::not_seen) + " could stay unseen";
+    html += "<h3>Could stay unseen</h3>\n" + power_table(explanation.power, Visible::not_seen).html();
   }
-  const std::size_t seen_count = explanation.power.size() - blind_count;
-  std::string words =
-      "Minimum detectable: the size that these recordings reveal 80 % of the time, with 1 % false alarms. ";
-  words.append(std::to_string(seen_count)).append(" of ").append(std::to_string(explanation.power.size()));
-  words.append(
-      " effects would be detected as soon as they are significant. Absorbed: the share of an effect that the fitted "
-      "parameters would absorb.");
-  std::string html = paragraph(words, "small muted");
-  if (blind_count > 0) html += blind.html();
-  if (seen_count > 0)
-    html += folded("The " + std::to_string(seen_count) + " effects that would be detected", seen.html());
-  return folded_section("What these recordings could detect",
-                        std::to_string(seen_count) + " of " + std::to_string(explanation.power.size()) +
-                            " effects would be detected once significant" +
-                            (blind_count > 0 ? ", " + std::to_string(blind_count) + " could go undetected" : ""),
-                        html, explanation.effects.empty() ? Paper::printed : Paper::closed);
+  if (count[Visible::as_a_parameter] > 0)
+    html += folded(effects(Visible::as_a_parameter) + " that would only change the fitted values",
+                   paragraph("The fitted parameters imitate these. None would leave a misfit; the values above would "
+                             "be off instead.",
+                             "small muted")
+                       .append(power_table(explanation.power, Visible::as_a_parameter).html()));
+  if (count[Visible::seen] > 0)
+    html +=
+        folded(effects(Visible::seen) + " that would be seen", power_table(explanation.power, Visible::seen).html());
+  return folded_section("What these recordings could detect", told, html,
+                        explanation.effects.empty() ? Paper::printed : Paper::closed);
 }
 
 }  // namespace sealwatch::report

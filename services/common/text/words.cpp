@@ -8,15 +8,17 @@ namespace sealwatch::text {
 std::string in_words(std::string_view identifier) {
   if (identifier == "unlisted") return "unlisted physics";  // the id of what no law of the list describes
   std::string text;
-  for (const char letter : identifier) {
-    if (letter == '_')
-      text += ' ';
-    else if (letter == ':')
+  bool symbol = false;  // "y_w", "R_CL": one letter with an index
+  for (std::size_t k = 0; k < identifier.size(); ++k) {
+    if (k == 0 || identifier[k - 1] == ':') symbol = identifier.substr(k + 1).starts_with('_');
+    if (identifier[k] == '_')
+      text += symbol ? '_' : ' ';
+    else if (identifier[k] == ':')
       text += ": ";
     else
-      text += letter;
+      text += identifier[k];
   }
-  if (identifier.ends_with("_a") || identifier.ends_with("_b"))  // "pressure A", "chamber B"
+  if (!symbol && (identifier.ends_with("_a") || identifier.ends_with("_b")))  // "pressure A", "chamber B"
     text.back() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.back())));
   for (const std::string_view surname : {"coulomb", "stribeck"})
     if (const std::size_t at = text.find(surname); at != std::string::npos)

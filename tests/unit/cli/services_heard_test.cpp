@@ -194,9 +194,10 @@ TEST_F(Listening, ListsWhatReturnedUnseenAndLeavesAdviceToItsAdvisory) {
   heard_.take(status, now_);
   const auto alarms = alarms_of(heard_.list(now_));
   ASSERT_EQ(alarms.size(), 2U);
-  EXPECT_EQ(one_line(alarms[0], kNow),
-            "RETURNED 2030-03-17T17:46:40Z, unacknowledged (failure)  state_detection  A  sensor lost: flow: flat "
-            "(sealwatch acknowledge A sensor_lost/flow --by NAME)");
+  EXPECT_EQ(
+      one_line(alarms[0], kNow),
+      "ENDED 2030-03-17T17:46:40Z, nobody has acknowledged it (failure)  state_detection  A  sensor lost: flow: flat "
+      "(sealwatch acknowledge A sensor_lost/flow --by NAME)");
   EXPECT_FALSE(is_blind(alarms, kNow));
   EXPECT_FALSE(stands_in_advisory(alarms[0], kNow));
   EXPECT_TRUE(stands_in_advisory(alarms[1], kNow));

@@ -10,6 +10,8 @@ TEST(Words, OfIdentifiers) {
   EXPECT_EQ(in_words("line_resistance"), "line resistance");
   EXPECT_EQ(in_words("sensor:pressure_a"), "sensor: pressure A");
   EXPECT_EQ(in_words("chamber_b"), "chamber B");
+  EXPECT_EQ(in_words("y_w"), "y_w");
+  EXPECT_EQ(in_words("sensor:p_a"), "sensor: p_a");
   EXPECT_EQ(in_words(""), "");
 }
 

@@ -18,6 +18,7 @@
 #include "services/common/runtime/asset_file.hpp"
 #include "services/common/runtime/large_blocks.hpp"
 #include "services/common/text/format.hpp"
+#include "services/common/text/numbers.hpp"
 #include "services/common/text/readable.hpp"
 #include "services/common/text/words.hpp"
 
@@ -100,11 +101,40 @@ Status write_laws(const AssetConfig& explained, const Files& files) {
   return write_file(files.laws_modelica, code.modelica);
 }
 
-Status write_all(const Explanation& explanation, const std::string& json, const Files& files) {
+double error_of(const Explanation& explanation, const std::string& name) {
+  const auto shift = std::ranges::find(explanation.parameters, name, &mismatch::ParameterShift::name);
+  return shift == explanation.parameters.end() ? 0.0 : shift->after_std;
+}
+
+double error_of(const Explanation& explanation, const PhysicsTerm& physics, const std::string& name) {
+  for (const FoundEffect& effect : explanation.effects) {
+    if (effect.what.id != physics.id || effect.what.element != physics.element) continue;
+    const auto found = std::ranges::find(effect.parameters, name, &FoundParameter::name);
+    if (found != effect.parameters.end()) return found->std_error;
+  }
+  return 0.0;
+}
+
+/// As people read it: estimates without the digits that the recordings do not tell; what was given stays as it is.
+AssetConfig written_asset(const Explanation& explanation, const AssetConfig& given) {
+  AssetConfig asset = explanation.explained;
+  for (auto& [name, setting] : asset.parameters) {
+    const auto before = given.parameters.find(name);
+    if (before == given.parameters.end() || before->second.value != setting.value)
+      setting.value = text::rounded_to_error(setting.value, error_of(explanation, name));
+  }
+  for (PhysicsTerm& physics : asset.physics)
+    for (auto& [name, setting] : physics.parameters)
+      setting.value = text::rounded_to_error(setting.value, error_of(explanation, physics, name));
+  return asset;
+}
+
+Status write_all(const Explanation& explanation, const AssetConfig& asset, const std::string& json,
+                 const Files& files) {
   if (Status status = write_file(files.json, json); !status) return status;
   if (Status status = write_file(files.html, report::explanation_to_html(explanation)); !status) return status;
-  if (Status status = write_laws(explanation.explained, files); !status) return status;
-  return save_asset(explanation.explained, files.asset);
+  if (Status status = write_laws(asset, files); !status) return status;
+  return save_asset(asset, files.asset);
 }
 
 std::string parameter_text(const FoundParameter& parameter) {
@@ -130,8 +160,8 @@ void print_channels(const char* which, const mismatch::PooledFit& fit, bool chan
   std::printf("\n  %-24s %14s %14s %12s %12s\n", which, "misfit/noise", changed ? "after" : "", "fit %",
               changed ? "after" : "");
   for (const mismatch::ChannelComparison& channel : fit.channels) {
-    std::printf("  %-24s %14s ", channel.channel.c_str(), number(channel.rms_before).c_str());
-    std::printf("%14s %12s", changed ? number(channel.rms_after).c_str() : "",
+    std::printf("  %-24s %14s ", channel.channel.c_str(), text::misfit_text(channel.rms_before).c_str());
+    std::printf("%14s %12s", changed ? text::misfit_text(channel.rms_after).c_str() : "",
                 text::format("{:.2f}", channel.nrmse_before).c_str());
     std::printf("%s\n", changed ? text::format(" {:12.2f}", channel.nrmse_after).c_str() : "");
   }
@@ -269,7 +299,7 @@ int explain_with(const ExplainEngine& engine, const ExplainOptions& options) {
     return kBadInput;
   }
   const std::string json = report::explanation_to_json(*explanation);
-  if (!good(write_all(*explanation, json, files))) return kBadInput;
+  if (!good(write_all(*explanation, written_asset(*explanation, *asset), json, files))) return kBadInput;
   options.json ? static_cast<void>(std::fputs(json.c_str(), stdout)) : print_text(*explanation, files);
   return explanation->verdict == mismatch::Verdict::undetermined ? kAnswerIsNo : kOk;
 }

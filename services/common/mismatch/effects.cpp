@@ -384,7 +384,7 @@ std::vector<Location> locate_at_a_sensor(const PooledFit& fit) {
   return {{.element = "sensor:" + worst->channel,
            .probability = kNeverCertain,
            .indistinguishable_from = {},
-           .evidence = "It misses by " + number(worst->rms_after) +
+           .evidence = "It misses by " + text::misfit_text(worst->rms_after) +
                        " times the noise, and no law asks for any of that: single samples are far off, or something "
                        "disturbs its signal."}};
 }

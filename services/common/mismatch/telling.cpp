@@ -45,13 +45,13 @@ std::string law_in_words(const LawAt& law) {
 
 std::string left_in_words(const PooledFit& fit) {
   if (const ChannelComparison* most = fit.missed())
-    return " A part remains unexplained: " + in_words(most->channel) + " still misses by " + number(most->rms_after) +
-           " times the noise.";
+    return " A part remains unexplained: " + in_words(most->channel) + " still misses by " +
+           text::misfit_text(most->rms_after) + " times the noise.";
   // Of samples that count nothing is missed: what the others miss has a cause of its own.
   const auto missed = std::ranges::max_element(fit.channels, {}, &ChannelComparison::rms_after);
   if (missed == fit.channels.end() || missed->rms_after < PooledFit::kNearly) return {};
   return " What the input did between samples may account for the rest: " + in_words(missed->channel) +
-         " still misses by " + number(missed->rms_after) +
+         " still misses by " + text::misfit_text(missed->rms_after) +
          " times the noise, and the values may be off by more than their errors say.";
 }
 
@@ -59,7 +59,7 @@ std::string proof_in_words(const PooledFit& holdout) {
   const ChannelComparison* proof = most_improved_channel(holdout);
   if (proof == nullptr) return {};
   return "the misfit of " + in_words(proof->channel) + " on held-out recordings falls from " +
-         number(proof->rms_before) + " to " + number(proof->rms_after) + " times the noise";
+         text::misfit_text(proof->rms_before) + " to " + text::misfit_text(proof->rms_after) + " times the noise";
 }
 
 std::string reason_in_words(const Error& error) {
@@ -79,7 +79,10 @@ std::string element_in_words(const std::string& element) {
 std::string evidence_of(const FoundEffect& effect, std::size_t effects, double misfit_before, double misfit_after) {
   std::string text = effects > 1 ? "With the other laws found, " : "Adding ";
   text.append(law_in_words(effect.what)).append(" takes the mean squared residual of the fit recordings from ");
-  text.append(number(misfit_before)).append(" to ").append(number(misfit_after)).append(" times the noise variance.");
+  text.append(text::misfit_text(misfit_before))
+      .append(" to ")
+      .append(text::misfit_text(misfit_after))
+      .append(" times the noise variance.");
   return text;
 }
 
@@ -128,7 +131,7 @@ constexpr double kNoLarger = 1.05;  // times the noise, whose own size is known 
 std::string hidden_by_the_input(const ChannelComparison* worst) {
   if (worst == nullptr || worst->rms_before < kNoLarger * std::max(1.0, worst->weighed_rms_after)) return {};
   return " What the input did between samples may account for the misfit of " + in_words(worst->channel) + " (" +
-         number(worst->rms_before) + " times the noise). Record the input faster to see what it hides.";
+         text::misfit_text(worst->rms_before) + " times the noise). Record the input faster to see what it hides.";
 }
 
 }  // namespace
@@ -169,7 +172,7 @@ std::string summary_of(const Explanation& explanation) {
     text.append(" (")
         .append(in_words(worst->channel))
         .append(": ")
-        .append(number(worst->rms_before))
+        .append(text::misfit_text(worst->rms_before))
         .append(" times the noise)");
   const bool single = explanation.fit_recordings.size() < 2 && explanation.holdout_recordings.empty();
   text += single ? "; a single recording cannot prove a law."

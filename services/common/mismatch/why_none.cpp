@@ -80,7 +80,8 @@ WhyNone runs_away(const std::string& runaway, const std::string& advice) {
 
 std::string missed_by_trend(const ChannelComparison& worst) {
   return " On held-out recordings, with what the trend predicts for them, " + in_words(worst.channel) + " misses by " +
-         number(worst.rms_after) + " times the noise: the prediction's error, or what the fitted tests do not show.";
+         text::misfit_text(worst.rms_after) +
+         " times the noise: the prediction's error, or what the fitted tests do not show.";
 }
 
 WhyNone value_of_the_asset_file(const std::string& values, bool several, const std::string& beside,
@@ -114,7 +115,7 @@ WhyNone nowhere_near(const ChannelComparison& far, const Data& fit, const Pooled
   const bool several_days = are_of_several_days(fit);
   return {.summary =
               "The simulation is far from these recordings, whatever law is added: with the best law it still misses " +
-              in_words(far.channel) + " by " + number(far.rms_after) +
+              in_words(far.channel) + " by " + text::misfit_text(far.rms_after) +
               " times the noise, more than half of the signal (the tables are without that law). No physics is named." +
               (several_days ? " What is missing may also differ from test to test." : ""),
           .next_test = several_days ? "These tests are from different days: analyse each alone, or those of one "
@@ -125,13 +126,14 @@ WhyNone nowhere_near(const ChannelComparison& far, const Data& fit, const Pooled
 
 std::string does_not_carry_over(const ChannelComparison& worse) {
   return "The better fit does not carry over: on held-out recordings it takes " + in_words(worse.channel) + " from " +
-         number(worse.rms_before) + " to " + number(worse.rms_after) + " times its noise. It is not claimed.";
+         text::misfit_text(worse.rms_before) + " to " + text::misfit_text(worse.rms_after) +
+         " times its noise. It is not claimed.";
 }
 
 WhyNone those_kept_aside_differ(const ChannelComparison& worst) {
   return {
       .summary = "The fitted recordings agree with the model, the held-out ones do not: " + in_words(worst.channel) +
-                 " misses by " + number(worst.rms_after) +
+                 " misses by " + text::misfit_text(worst.rms_after) +
                  " times the noise. The asset changed between them, or what is missing acts in these alone.",
       .next_test = "Fit some of the held-out recordings together with the others, and hold out others of each kind."};
 }

@@ -73,7 +73,7 @@ std::string step_for(const mismatch::FoundEffect& effect, const std::string& wor
 // What was found is not all: another law, perhaps none of the catalogue, takes part in what it takes.
 std::string step_for_the_rest(const Explanation& explanation, const mismatch::ChannelComparison& missed) {
   std::string step = "Find the rest before you use asset.explained.yaml: " + text::in_words(missed.channel) +
-                     " still misses by " + text::number_text(missed.rms_after, 3) +
+                     " still misses by " + text::misfit_text(missed.rms_after) +
                      " times its noise, and the cause may be another one.";
   if (!explanation.rejected.empty() &&
       explanation.rejected.front().share > explanation.rejected.front().allowed_share) {
@@ -101,7 +101,7 @@ std::vector<std::string> steps_after(const Explanation& explanation) {
 }
 
 std::string arrow(double before, double after) {
-  return text::number_text(before, 3).append(" → ").append(text::number_text(after, 3));
+  return text::misfit_text(before).append(" → ").append(text::misfit_text(after));
 }
 
 std::string figures(const Explanation& explanation) {
@@ -111,7 +111,7 @@ std::string figures(const Explanation& explanation) {
   const auto add_misfit = [&html, changed](const mismatch::PooledFit& fit, const std::string& where) {
     const Misfit misfit = overall(fit);
     if (misfit.known)
-      add_figure(changed ? arrow(misfit.before, misfit.after) : text::number_text(misfit.before, 3),
+      add_figure(changed ? arrow(misfit.before, misfit.after) : text::misfit_text(misfit.before),
                  std::string("misfit, ").append(where), html);
   };
   add_misfit(explanation.holdout, explanation.holdout_recordings.empty() ? "left out in turn" : "held out");

@@ -96,7 +96,7 @@ std::string change(const std::string& before, const std::string& after, bool cha
 /// "71.0 → 1.02", coloured where the change is more than 2 %.
 std::string misfit_cell(const ChannelComparison& channel, bool changed) {
   std::string text =
-      escaped(change(text::number_text(channel.rms_before), text::number_text(channel.rms_after), changed));
+      escaped(change(text::misfit_text(channel.rms_before), text::misfit_text(channel.rms_after), changed));
   const bool better = channel.rms_after < 0.98 * channel.rms_before;
   const bool worse = channel.rms_after > 1.02 * channel.rms_before;
   if (!changed || (!better && !worse)) return text;

@@ -29,10 +29,17 @@ void write_flow(YAML::Emitter& out, const std::string& key, const Entries& entri
   out << YAML::EndMap;
 }
 
+/// A tenth of a value without the last digits of the division: 0.15 and not 0.15000000000000002.
+double rounded_bound(double bound) {
+  constexpr int kDigits = 12;
+  return number_of(text::significant(bound, kDigits)).value_or(bound);
+}
+
 void write_setting(YAML::Emitter& out, const std::string& name, const ParameterSetting& setting) {
-  Entries entries = {{"value", text::exact(setting.value)},
-                     {"min", text::exact(setting.min)},
-                     {"max", text::exact(setting.max)},
+  const double min = rounded_bound(setting.min), max = rounded_bound(setting.max);
+  Entries entries = {{"value", text::exact(std::clamp(setting.value, min, max))},
+                     {"min", text::exact(min)},
+                     {"max", text::exact(max)},
                      {"estimate", setting.estimate ? "true" : "false"}};
   // Of a value that came out smaller than it was given: a tolerance above the value is refused.
   const double tolerance = setting.min > 0.0 ? std::min(setting.tolerance, setting.value) : setting.tolerance;

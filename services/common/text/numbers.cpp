@@ -30,6 +30,19 @@ std::string with_zeros(double value, int digits) {
   return format("{:.{}f}", value, std::max(digits - 1 - exponent, 0));
 }
 
+double rounded_to_error(double value, double error) {
+  constexpr double kGuard = 1e-3, kWithoutError = 1e-6;
+  const double step = error > 0.0 && std::isfinite(error) ? kGuard * error : kWithoutError * std::abs(value);
+  if (!(step > 0.0) || !std::isfinite(value) || value == 0.0) return value;
+  const int digits = std::clamp(
+      static_cast<int>(std::floor(std::log10(std::abs(value)))) - static_cast<int>(std::floor(std::log10(step))) + 1, 1,
+      17);
+  const std::string text = format("{:.{}e}", value, digits - 1);
+  double rounded = value;
+  std::from_chars(text.data(), text.data() + text.size(), rounded);
+  return rounded;
+}
+
 std::string exact(double value) {
   std::array<char, 32> text{};
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
@@ -61,7 +74,9 @@ std::string as_condition(double condition) { return format("{:.3f}", condition);
 std::string condition_in_percent(double condition) { return percent(condition); }
 
 std::string condition_with_std(double condition, double condition_std) {
-  return format("{:.2f} ± {:.1g} %", 100.0 * condition, 100.0 * condition_std);
+  const std::string error = format("{:.1g}", 100.0 * condition_std);
+  const int decimals = condition_std > 0.0 ? -static_cast<int>(std::floor(std::log10(100.0 * condition_std))) : 2;
+  return format("{:.{}f} ± {} %", 100.0 * condition, std::clamp(decimals, 0, 6), error);
 }
 
 std::string spread_in_percent(double spread) { return format("{:.2g} %", 100.0 * spread); }

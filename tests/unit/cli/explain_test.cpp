@@ -62,6 +62,7 @@ class ExplainCommand : public ::testing::Test {
           found_.asset_id = asset.asset_id;
           found_.model = asset.model;
           found_.explained = asset;
+          if (estimate_ > 0.0) found_.explained.parameters.at("R_CL").value = estimate_;
           for (const Recording& one : fit) found_.fit_recordings.push_back(one.recording_id);
           for (const Recording& one : holdout) found_.holdout_recordings.push_back(one.recording_id);
           return Result<mismatch::Explanation>(found_);
@@ -78,6 +79,7 @@ class ExplainCommand : public ::testing::Test {
   mismatch::Explanation found_;
   mismatch::ExplainOptions given_;
   int analyses_ = 0;
+  double estimate_ = 0.0;  ///< of R_CL
   std::string out_, err_;
 };
 
@@ -111,6 +113,15 @@ TEST_F(ExplainCommand, WritesTheThreeFilesAndSaysWhereToLook) {
   const auto asset = load_asset((out / "asset.explained.yaml").string());
   ASSERT_TRUE(asset) << asset.error().describe();
   EXPECT_EQ(asset->asset_id, "A");
+}
+
+TEST_F(ExplainCommand, TheAssetHasNoDigitsThatTheRecordingsDoNotTell) {
+  estimate_ = 25955123187728.89;
+  found_.parameters = {{.name = "R_CL", .unit = "Pa s/m3", .after = estimate_, .after_std = 2.2e10}};
+  EXPECT_EQ(run(), kOk);
+  const std::string asset = content(std::filesystem::path(options_.directory) / "asset.explained.yaml");
+  EXPECT_THAT(asset, HasSubstr("R_CL: {value: 2.595512e+13, "));
+  EXPECT_THAT(asset, Not(ContainsRegex("000000[0-9]|999999")));
 }
 
 TEST_F(ExplainCommand, JsonIsTheReport) {

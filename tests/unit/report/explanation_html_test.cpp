@@ -200,6 +200,13 @@ TEST(ReportHtml, SaysHowMuchAForbiddenFitWouldHaveTaken) {
   EXPECT_THAT(html, HasSubstr("with a possible value would have explained 61 % of the misfit"));
 }
 
+TEST(ReportHtml, TellsWhatWouldOnlyChangeFittedValuesFromWhatCouldStayUnseen) {
+  const std::string html = explanation_to_html(consistent_example());
+  EXPECT_THAT(html, HasSubstr("1 of 3 effects would be seen as soon as they matter, 1 could stay unseen"));
+  EXPECT_THAT(html, HasSubstr("1 that would only change the fitted values"));
+  EXPECT_LT(html.find("Could stay unseen"), html.find("1 that would only change the fitted values"));
+}
+
 TEST(ReportHtml, NamesTheLawOfAMissingTermAndSaysWhereItLeavesTheBand) {
   mismatch::Explanation explanation = example_explanation();
   mismatch::MissingTerm& term = explanation.missing.front();
@@ -207,11 +214,11 @@ TEST(ReportHtml, NamesTheLawOfAMissingTermAndSaysWhereItLeavesTheBand) {
   term.element = "sensor:level_voltage";
   std::string html = explanation_to_html(explanation);
   EXPECT_THAT(html, HasSubstr("Sensor bias of the sensor of level voltage: missing force against +x, recording fit_0"));
-  EXPECT_THAT(html, Not(HasSubstr("makes the band too narrow")));
+  EXPECT_THAT(html, Not(HasSubstr("makes the interval too narrow")));
   for (double& value : term.law) value += 5000.0;
   html = explanation_to_html(explanation);
-  EXPECT_THAT(html, HasSubstr("lies inside the band at 0 % of the points"));
-  EXPECT_THAT(html, HasSubstr("makes the band too narrow"));
+  EXPECT_THAT(html, HasSubstr("lies within the interval at 0 % of the points"));
+  EXPECT_THAT(html, HasSubstr("makes the interval too narrow"));
 }
 
 TEST(ReportHtml, NamesElementsAsAnEngineerDoes) {
@@ -302,6 +309,17 @@ TEST(Drawing, HasAPlaceForEveryElementOfEveryPlant) {
     }
     EXPECT_THAT(actuator_drawing(plant, {}, {}), Not(HasSubstr("class=\"hot")));
   }
+}
+
+TEST(Drawing, OfAPlantWithoutAPictureIsAsWideAsItsBoxes) {
+  PlantDescription cart;
+  cart.name = "cart";
+  for (const char* name : {"coil", "cart", "sensor:coil_current"})
+    cart.elements.push_back({.name = name, .meaning = ""});
+  const std::string svg = actuator_drawing(cart, {}, {"coil_current"});
+  EXPECT_THAT(svg, HasSubstr("width=\"360.0\""));
+  EXPECT_THAT(svg, HasSubstr(">coil current</text>"));
+  EXPECT_EQ(what_is_wrong(svg), "");
 }
 
 TEST(Drawing, OutlinesWhatCannotBeToldApart) {

@@ -34,8 +34,8 @@ TEST(Numbers, OfProbabilitiesAreNeverCertain) {
 
 TEST(Numbers, OfTheSealConditionAreInPercent) {
   EXPECT_EQ(condition_in_percent(0.667), "66.7 %");
-  EXPECT_EQ(condition_with_std(0.7235, 0.0021), "72.35 ± 0.2 %");
-  EXPECT_EQ(condition_with_std(0.66704, 2e-5), "66.70 ± 0.002 %");
+  EXPECT_EQ(condition_with_std(0.7235, 0.0021), "72.4 ± 0.2 %");
+  EXPECT_EQ(condition_with_std(0.66704, 2e-5), "66.704 ± 0.002 %");
   EXPECT_EQ(spread_in_percent(0.00123), "0.12 %");
 }
 
@@ -52,6 +52,14 @@ TEST(Numbers, HaveTheirDigits) {
   EXPECT_EQ(with_zeros(1.23), "1.230");
   EXPECT_EQ(with_zeros(1.234e6, 3), "1.23e+06");
   EXPECT_EQ(with_zeros(0.0), "0");
+}
+
+TEST(Numbers, OfEstimatesEndWhereTheRecordingsTellNoMore) {
+  EXPECT_EQ(rounded_to_error(25955123187728.89, 2.2e10), 2.595512e13);
+  EXPECT_EQ(rounded_to_error(-3.997945281597366e-14, 8.5e-17), -3.997945e-14);
+  EXPECT_EQ(rounded_to_error(0.005889201872894887, 0.0), 0.005889202);
+  EXPECT_EQ(rounded_to_error(1e-5, 1.0), 1e-5);
+  EXPECT_EQ(rounded_to_error(0.0, 1.0), 0.0);
 }
 
 TEST(Numbers, ArePlainWhereAnEngineerReadsThem) {

@@ -540,7 +540,7 @@ Result<Understood> understand(const AssetNewOptions& options) {
     return fail(Error{.file = options.log,
                       .place = {},
                       .value = {},
-                      .rule = "no column is a time: none is called so, holds clocks or rises from row to row",
+                      .rule = "no column is a time: none has such a name, holds clock times or rises from row to row",
                       .advice = "write the map by hand (docs/logs.md): of rows a fixed time apart it is "
                                 "time: {column: row, unit: s, scale: SECONDS_BETWEEN_ROWS}"});
   Understood log;

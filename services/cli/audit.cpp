@@ -120,7 +120,7 @@ int run_audit(const AuditOptions& options) {
     complain(Error{.file = {},
                    .place = "--contains",
                    .value = options.contains,
-                   .rule = "is in no record any more: its end was cut off",
+                   .rule = "is no longer in the trail: its end was cut off",
                    .advice = "compare with a backup, and with 'act recorded' in the services' logs"});
   const bool whole =
       std::ranges::none_of(*trails, [](const Trail& trail) { return trail.broken.has_value() || !trail.has_anchors; });

@@ -31,7 +31,7 @@ void add_quarantine(CommandLine& line) {
       "retries it within seconds, a stopped one when it starts. If it fails twice again, it returns to quarantine.",
       [options] { return run_quarantine_retry(*options); });
   retry->add_option("id", options->message_id, "message id, or PST id, as `quarantine list` shows it")->required();
-  retry->add_option("--by", options->by, "who")->required();
+  retry->add_option("--by", options->by, "your name")->required();
   for (CLI::App* one : {list, retry}) {
     CommandLine::add_config(one, options->config);
     one->add_option("--state", options->state_directory,
@@ -42,15 +42,14 @@ void add_quarantine(CommandLine& line) {
 void add_audit(CommandLine& line) {
   const auto options = std::make_shared<AuditOptions>();
   CLI::App* audit =
-      line.command("audit", "audit trail of operator actions, with an integrity check",
+      line.command("audit", "show the audit trail of operator actions and check its integrity",
                    "sealwatch audit --state STATE\n  sealwatch audit --asset XT03-MV2 --json\n  sealwatch "
                    "audit --contains HASH",
                    [options] { return run_audit(*options); });
   CommandLine::add_config(audit, options->config);
   audit->add_option("--state", options->state_directory,
                     "state directory of the services (running or not), instead of the configuration's");
-  audit->add_option("--asset", options->asset_id,
-                    "show the actions on one asset; the whole trail is checked all the same");
+  audit->add_option("--asset", options->asset_id, "show the actions on one asset; the whole trail is checked anyway");
   audit->add_option("--contains", options->contains,
                     "check that a hash noted earlier is still in the trail (if not, the trail was truncated)");
   audit->add_flag("--json", options->json, "machine-readable result (schema sealwatch.audit/1)");

@@ -17,7 +17,7 @@ void add_acknowledge(CommandLine& line) {
   acknowledge->add_option("asset", options->asset_id, "asset id, or - for an alarm that concerns no asset")->required();
   acknowledge->add_option("advisory", options->advisory_id, "advisory id, or an alarm's id as `status --json` shows it")
       ->required();
-  acknowledge->add_option("--by", options->by, "who")->required();
+  acknowledge->add_option("--by", options->by, "your name")->required();
   acknowledge->add_option("--remark", options->remark, "free text");
 }
 
@@ -32,7 +32,7 @@ void add_replaced(CommandLine& line) {
   replaced->add_option("--what", options->what, "actuator or seal")
       ->check(CLI::IsMember({"actuator", "seal"}))
       ->capture_default_str();
-  replaced->add_option("--by", options->by, "who")->required();
+  replaced->add_option("--by", options->by, "your name")->required();
   replaced->add_option("--remark", options->remark, "free text");
 }
 
@@ -50,10 +50,10 @@ void add_shelving(CommandLine& line) {
     CommandLine::add_config(one, options->config);
     one->add_option("asset", options->asset_id, "asset id, or - for an alarm that concerns no asset")->required();
     one->add_option("alarm", options->alarm_id, "the alarm's id as `status --json` shows it")->required();
-    one->add_option("--by", options->by, "who")->required();
+    one->add_option("--by", options->by, "your name")->required();
   }
-  shelve->add_option("--reason", options->reason, "why")->required();
-  unshelve->add_option("--reason", options->reason, "why");
+  shelve->add_option("--reason", options->reason, "the reason")->required();
+  unshelve->add_option("--reason", options->reason, "the reason");
 }
 
 void add_out_of_service(CommandLine& line) {
@@ -61,7 +61,7 @@ void add_out_of_service(CommandLine& line) {
   CLI::App* out = line.command("out-of-service", "hide an asset's alarms during work on it",
                                "sealwatch out-of-service XT03-MV2 --by 'J. Silva' --reason 'valve is being replaced'",
                                [options] { return run_out_of_service(*options); });
-  out->add_option("--reason", options->reason, "why")->required();
+  out->add_option("--reason", options->reason, "the reason")->required();
   CLI::App* in = line.command("in-service", "show an asset's alarms again",
                               "sealwatch in-service XT03-MV2 --by 'J. Silva'", [options] {
                                 options->back = true;
@@ -71,7 +71,7 @@ void add_out_of_service(CommandLine& line) {
   for (CLI::App* one : {out, in}) {
     CommandLine::add_config(one, options->config);
     one->add_option("asset", options->asset_id, "asset id")->required();
-    one->add_option("--by", options->by, "who")->required();
+    one->add_option("--by", options->by, "your name")->required();
   }
 }
 
@@ -88,8 +88,8 @@ void add_retract(CommandLine& line) {
   what->add_option("--withdraw", options->withdraw,
                    "id of a retraction or replacement: the tests that it set aside count again");
   what->require_option(1);
-  retract->add_option("--by", options->by, "who")->required();
-  retract->add_option("--reason", options->reason, "why")->required();
+  retract->add_option("--by", options->by, "your name")->required();
+  retract->add_option("--reason", options->reason, "the reason")->required();
 }
 
 void add_confirm(CommandLine& line) {
@@ -104,7 +104,7 @@ void add_confirm(CommandLine& line) {
                    "id of the waiting replacement, retraction or accepted model, as `status` shows it")
       ->required();
   confirm->add_flag("--reject", options->reject, "reject it instead; the person who reported it may do so, too");
-  confirm->add_option("--by", options->by, "who: not the person who reported it")->required();
+  confirm->add_option("--by", options->by, "your name; not that of the person who reported it")->required();
   confirm->add_option("--remark", options->remark, "free text");
 }
 
@@ -118,7 +118,7 @@ void add_accept(CommandLine& line) {
   accept->add_option("--discrepancy", options->discrepancy_id, "id of the model_discrepancy, as `status` shows it")
       ->required();
   accept->add_flag("--revoke", options->revoke, "return to the model of the asset file");
-  accept->add_option("--by", options->by, "who")->required();
+  accept->add_option("--by", options->by, "your name")->required();
   accept->add_option("--remark", options->remark, "free text");
 }
 

@@ -17,6 +17,7 @@
 #include "services/common/report/explanation_sections.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "services/common/runtime/large_blocks.hpp"
+#include "services/common/text/estimates.hpp"
 #include "services/common/text/format.hpp"
 #include "services/common/text/numbers.hpp"
 #include "services/common/text/readable.hpp"

@@ -17,7 +17,7 @@ Error without_text(const PlantDescription& plant) {
   return {.file = {},
           .place = {},
           .value = plant.name,
-          .rule = "is a plant that is built in, whose equations are compiled and cannot be written out",
+          .rule = "is a built-in plant whose equations are compiled and have no text form",
           .advice = "write it as text (docs/tutorial-plant.md) and name that with model: FILE.yaml"};
 }
 

@@ -36,7 +36,7 @@ Status write_new(const std::string& file, const std::string& text) {
               .advice = "give another name with --out"});
   const bool written = std::fwrite(text.data(), 1, text.size(), stream) == text.size();
   if (std::fclose(stream) == 0 && written) return {};
-  return fail(Error{.file = file, .place = {}, .value = {}, .rule = "cannot be written to its end", .advice = {}});
+  return fail(Error{.file = file, .place = {}, .value = {}, .rule = "cannot be written completely", .advice = {}});
 }
 
 }  // namespace

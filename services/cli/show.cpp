@@ -163,7 +163,7 @@ Status write_waveform(const SourceNode& root, const std::string& file) {
     return fail(Error{.file = {},
                       .place = "--csv",
                       .value = window->header.message_id,
-                      .rule = "has no samples any more: retention has dropped them",
+                      .rule = "no longer has samples: retention has dropped them",
                       .advice = "its conclusions are there without them; key retention of the configuration says how "
                                 "long samples are kept"});
   if (window == nullptr || window->samples.time_s.empty())

@@ -17,6 +17,7 @@
 #include "services/common/mismatch/resolution.hpp"
 #include "services/common/mismatch/standard_errors.hpp"
 #include "services/common/mismatch/telling.hpp"
+#include "services/common/text/estimates.hpp"
 #include "services/common/text/numbers.hpp"
 #include "services/common/text/readable.hpp"
 

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "sealwatch/model/plant_description.hpp"
+#include "services/common/text/estimates.hpp"
 
 namespace sealwatch::mismatch {
 namespace {

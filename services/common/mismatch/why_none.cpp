@@ -5,6 +5,7 @@
 
 #include "services/common/mismatch/recorded_units.hpp"
 #include "services/common/mismatch/telling.hpp"
+#include "services/common/text/estimates.hpp"
 
 namespace sealwatch::mismatch {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "services/common/report/explanation_sections.hpp"
 #include "services/common/report/page.hpp"
+#include "services/common/text/estimates.hpp"
 #include "services/common/text/readable.hpp"
 #include "services/common/text/words.hpp"
 

@@ -30,19 +30,6 @@ std::string with_zeros(double value, int digits) {
   return format("{:.{}f}", value, std::max(digits - 1 - exponent, 0));
 }
 
-double rounded_to_error(double value, double error) {
-  constexpr double kGuard = 1e-3, kWithoutError = 1e-6;
-  const double step = error > 0.0 && std::isfinite(error) ? kGuard * error : kWithoutError * std::abs(value);
-  if (!(step > 0.0) || !std::isfinite(value) || value == 0.0) return value;
-  const int digits = std::clamp(
-      static_cast<int>(std::floor(std::log10(std::abs(value)))) - static_cast<int>(std::floor(std::log10(step))) + 1, 1,
-      17);
-  const std::string text = format("{:.{}e}", value, digits - 1);
-  double rounded = value;
-  std::from_chars(text.data(), text.data() + text.size(), rounded);
-  return rounded;
-}
-
 std::string exact(double value) {
   std::array<char, 32> text{};
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};

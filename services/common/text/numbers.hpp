@@ -14,9 +14,6 @@ namespace sealwatch::text {
 [[nodiscard]] std::string number(double value, int digits = 3);
 /// The same with trailing zeros, for columns: "1.230"; an exponent from 1e6 on and below 0.001.
 [[nodiscard]] std::string with_zeros(double value, int digits = 4);
-/// An estimate with three digits more than its standard error has, so that rounding changes no simulation; without an
-/// error with seven: 0.0058892018 -> 0.005889202.
-[[nodiscard]] double rounded_to_error(double value, double error);
 /// The shortest text that reads back as the same number: "0.1", "1e-07".
 [[nodiscard]] std::string exact(double value);
 
@@ -36,7 +33,7 @@ namespace sealwatch::text {
 [[nodiscard]] std::string as_condition(double condition);
 /// 0.667 -> "66.7 %": the seal condition as on operators' screens.
 [[nodiscard]] std::string condition_in_percent(double condition);
-/// Seal condition and its standard error, as many decimals as the error's first digit: "72.4 ± 0.2 %".
+/// Seal condition and its standard error: "72.35 ± 0.2 %".
 [[nodiscard]] std::string condition_with_std(double condition, double condition_std);
 /// How far estimates of it scatter: 0.00123 -> "0.12 %".
 [[nodiscard]] std::string spread_in_percent(double spread);

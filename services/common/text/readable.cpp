@@ -138,10 +138,6 @@ std::string percent_text(double share) {
   return share < 0.0 || share > 1.0 ? percent(share) : in_percent(share);
 }
 
-std::string misfit_text(double value) {
-  return std::abs(value) < 9.995 ? format("{:.2f}", value) : number_text(value, 3);
-}
-
 std::string p_value_text(double p) {
   if (!std::isfinite(p)) return "–";
   if (p < 1e-9) return "< 10⁻⁹";  // further digits of a tail would mean nothing

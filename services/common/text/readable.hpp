@@ -38,9 +38,6 @@ struct DisplayUnit {
 /// A share as percentage, "97 %", "0.4 %"; never "100 %" or "0 %" for what is neither.
 [[nodiscard]] std::string percent_text(double share);
 
-/// A misfit over the noise, whose own size is hardly known to a hundredth: "115", "9.64", "0.99".
-[[nodiscard]] std::string misfit_text(double value);
-
 /// A p-value: "0.23", "< 10⁻⁹" at the least.
 [[nodiscard]] std::string p_value_text(double p);
 

@@ -1,5 +1,6 @@
 // Numbers as people read them.
 #include "services/common/text/numbers.hpp"
+#include "services/common/text/estimates.hpp"
 
 #include <gtest/gtest.h>
 

@@ -187,7 +187,9 @@ std::string before_and_after(const std::string& report_page, const std::string& 
   canvas.place(drawing_in(report_page.substr(report_page.find("<title>" + channel, report_page.find(kOverlays))), "",
                           "recorded − simulated"),
                0.0, 186.0);
-  canvas.place(drawing_in(report_page, kMissing, "<title>missing"), kColumn, 0.0);
+  // The second plot of the term: over what it depends on.
+  const std::size_t over_time = report_page.find("<title>missing", report_page.find(kMissing));
+  canvas.place(drawing_in(report_page.substr(over_time), "", "<title>missing"), kColumn, 0.0);
   canvas.text(between(report_page, "<div class=\"screen\">\n<div>\n<h2>What the model lacks</h2>\n<h3>", "</h3>"),
               kColumn + 54.0, 272.0, "title");
   canvas.text(between(report_page, "<span class=\"law\">", "</span>") + ",  " +

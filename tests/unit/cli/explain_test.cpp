@@ -117,6 +117,7 @@ TEST_F(ExplainCommand, WritesTheThreeFilesAndSaysWhereToLook) {
 
 TEST_F(ExplainCommand, TheAssetHasNoDigitsThatTheRecordingsDoNotTell) {
   estimate_ = 25955123187728.89;
+  found_.verdict = mismatch::Verdict::consistent;
   found_.parameters = {{.name = "R_CL", .unit = "Pa s/m3", .after = estimate_, .after_std = 2.2e10}};
   EXPECT_EQ(run(), kOk);
   const std::string asset = content(std::filesystem::path(options_.directory) / "asset.explained.yaml");
@@ -224,7 +225,7 @@ TEST_F(ExplainCommand, AValueOfTheAssetFileInPlaceOfLawsIsShownBeforeAndAfter) {
   found_.asset_values = {{{.name = "A_C", .unit = "m2", .in_asset_file = 5.89e-3, .fitted = 6e-3, .std_error = 1e-6}}};
   found_.holdout.channels = {{.channel = "flow", .rms_before = 7.25, .rms_after = 1.5}};
   EXPECT_EQ(run(), kAnswerIsNo);
-  EXPECT_THAT(out_, ContainsRegex("flow +7.250 +1.500 "));
+  EXPECT_THAT(out_, ContainsRegex("flow +7.25 +1.50 "));
   EXPECT_THAT(out_, HasSubstr("the asset with the value that explains as much: "));
 }
 

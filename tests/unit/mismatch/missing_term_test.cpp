@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <numeric>
 #include <random>
 
@@ -131,14 +132,16 @@ TEST(MissingTerm, IsDrawnOverTheRecordingInWhichItCanBeRead) {
   const Trial best{.effects = {{law, "piston"}},
                    .model = std::make_shared<FittedModel>(fit_model(truth, data, &without, 1).value())};
   Explanation result;
-  result.effects.push_back({.what = {.id = law->id, .form = {}, .element = "piston", .law = {}, .meaning = {}}});
+  result.effects.resize(1);  // claimed
   draw_missing_terms(without, best, data, true, result);
   ASSERT_EQ(result.missing.size(), 1U);
   const MissingTerm& term = result.missing.front();
   EXPECT_EQ(term.recording, "stroke");
   ASSERT_EQ(term.path_state.size(), term.path_law.size());
   for (std::size_t k = 0; k < term.path_law.size(); ++k)  // the law itself: no mean of both sides of a jump
-    if (std::abs(term.path_state[k]) > 5e-4) EXPECT_NEAR(std::abs(term.path_law[k]), 1500.0, 50.0);
+    if (std::abs(term.path_state[k]) > 5e-4) {
+      EXPECT_NEAR(std::abs(term.path_law[k]), 1500.0, 50.0);
+    }
 }
 
 TEST(MissingTerm, DepartsFromALawThatIsWrong) {

@@ -104,7 +104,7 @@ TEST(Summary, SaysWhatTheInputMayHide) {
   found.verdict = Verdict::consistent;
   found.fit.channels = {{.channel = "motor_current", .rms_before = 1.6, .weighed_rms_after = 1.0},
                         {.channel = "pressure_a", .rms_before = 1.02, .weighed_rms_after = 1.0}};
-  EXPECT_NE(summary_of(found).find("may account for the misfit of motor current (1.6 times the noise)"),
+  EXPECT_NE(summary_of(found).find("may account for the misfit of motor current (1.60 times the noise)"),
             std::string::npos)
       << summary_of(found);
   found.fit.channels.front().weighed_rms_after = 1.6;

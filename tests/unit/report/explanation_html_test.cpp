@@ -152,7 +152,7 @@ TEST(ReportHtml, TellsWhatWasFound) {
                            "fits better only with oil flowing",
                            "had been compensating for it",
                            "13 % more worn",
-                           "cannot be detected in these recordings",
+                           "no size",
                            "Record a stroke at 0.2 mm/s",
                            "Inspect the piston for ",
                            "put it in place of the asset file",

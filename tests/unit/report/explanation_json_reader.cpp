@@ -157,7 +157,9 @@ MissingTerm read_missing(const Json& json) {
           .state_value = numbers(json, "state_value"),
           .demanded = numbers(json, "demanded"),
           .band = numbers(json, "band"),
-          .law = numbers(json, "law")};
+          .law = numbers(json, "law"),
+          .path_state = {},  // of the page alone
+          .path_law = {}};
 }
 
 Location read_location(const Json& json) {

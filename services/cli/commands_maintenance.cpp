@@ -42,7 +42,7 @@ void add_quarantine(CommandLine& line) {
 void add_audit(CommandLine& line) {
   const auto options = std::make_shared<AuditOptions>();
   CLI::App* audit =
-      line.command("audit", "show the audit trail of operator actions and check its integrity",
+      line.command("audit", "show the trail of operator actions and check its integrity",
                    "sealwatch audit --state STATE\n  sealwatch audit --asset XT03-MV2 --json\n  sealwatch "
                    "audit --contains HASH",
                    [options] { return run_audit(*options); });

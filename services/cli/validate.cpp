@@ -10,6 +10,7 @@
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/cli/validate_page.hpp"
+#include "services/common/text/estimates.hpp"
 #include "services/common/text/format.hpp"
 #include "services/common/text/readable.hpp"
 
@@ -60,11 +61,13 @@ void print_text(const AssetConfig& asset, const ModelValidation& validation, con
               "independence p");
   for (const RecordingValidation& recording : validation.recordings)
     for (const ChannelValidation& channel : recording.channels)
-      std::printf("  %-34s %-22s %s   %s %s\n", std::filesystem::path(recording.recording).filename().string().c_str(),
-                  channel.fit.channel.c_str(),
-                  text::format("{:9.2f} {:10.3g}", channel.fit.nrmse_percent, channel.fit.noise_normalised_rms).c_str(),
-                  padded(text::p_value_text(channel.fit.whiteness_p), 13).c_str(),
-                  text::p_value_text(channel.fit.independence_p).c_str());
+      std::printf(
+          "  %-34s %-22s %s   %s %s\n", std::filesystem::path(recording.recording).filename().string().c_str(),
+          channel.fit.channel.c_str(),
+          text::format("{:9.2f} {:>10}", channel.fit.nrmse_percent, text::misfit_text(channel.fit.noise_normalised_rms))
+              .c_str(),
+          padded(text::p_value_text(channel.fit.whiteness_p), 13).c_str(),
+          text::p_value_text(channel.fit.independence_p).c_str());
   if (const std::string next = next_step(validation); !next.empty()) std::printf("%s\n", next.c_str());
   std::printf("wrote report.html and validation.json to %s\n", directory.c_str());
 }

@@ -5,6 +5,7 @@
 
 #include "services/common/report/page.hpp"
 #include "services/common/report/plot.hpp"
+#include "services/common/text/estimates.hpp"
 #include "services/common/text/readable.hpp"
 #include "services/common/text/words.hpp"
 
@@ -65,7 +66,7 @@ std::string channel_table(const RecordingValidation& recording) {
     const bool noise_known = channel.noise_std > 0.0;
     table.row({text::in_words(channel.fit.channel), text::number_text(channel.fit.nrmse_percent, 4),
                noise_known ? text::readable(channel.noise_std, channel.unit) : "not known",
-               noise_known ? text::number_text(channel.fit.noise_normalised_rms) : "–",
+               noise_known ? text::misfit_text(channel.fit.noise_normalised_rms) : "–",
                text::p_value_text(channel.fit.whiteness_p), text::p_value_text(channel.fit.independence_p)});
   }
   return table.html();

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include "services/common/report/explanation_sections.hpp"
 #include "services/common/report/page.hpp"
@@ -17,6 +19,7 @@ using mismatch::MissingTerm;
 constexpr std::size_t kShownOpen = 2;     ///< terms that are shown open, the others folded
 constexpr std::size_t kMostPoints = 240;  ///< over what the term depends on
 constexpr int kHeight = 240;              ///< of a plot, pixels
+constexpr double kGap = 3.0;              ///< steps of time, from which on it is interrupted
 constexpr double kLawWidth = 1.8;         ///< of its line, pixels
 constexpr std::string_view kDemanded = "required by data, 95 %";
 constexpr double kActs = 0.1;           ///< of its largest size, from which a law acts
@@ -34,21 +37,46 @@ bool has_law(const MissingTerm& term) { return term.law.size() == term.time_s.si
 
 std::string title_of_plots(const MissingTerm& term) { return std::string("missing ").append(term.quantity); }
 
+/// Stretches of time without a gap: windows that were not analysed lie between them.
+std::vector<std::span<const double>> stretches_of(std::span<const double> time) {
+  std::vector<std::span<const double>> stretches;
+  std::size_t begin = 0;
+  for (std::size_t k = 1; k <= time.size(); ++k) {
+    if (k < time.size() && (k < begin + 2 || time[k] - time[k - 1] <= kGap * (time[k - 1] - time[k - 2]))) continue;
+    stretches.push_back(time.subspan(begin, k - begin));
+    begin = k;
+  }
+  return stretches;
+}
+
+/// The same part of values at these times.
+std::vector<double> part_of(const std::vector<double>& values, std::size_t begin, std::size_t size) {
+  const auto first = values.begin() + static_cast<std::ptrdiff_t>(begin);
+  return {first, first + static_cast<std::ptrdiff_t>(size)};
+}
+
 Plot over_time(const MissingTerm& term) {
   Plot plot{
       .title = title_of_plots(term), .x = {.label = "time", .unit = "s"}, .y = {.unit = term.unit}, .height = kHeight};
-  Band band{.x = term.time_s, .ink = Ink::muted, .label = std::string(kDemanded)};
-  const std::size_t size = std::min(term.demanded.size(), term.band.size());
-  for (std::size_t k = 0; k < size; ++k) {
-    band.low.push_back(term.demanded[k] - term.band[k]);
-    band.high.push_back(term.demanded[k] + term.band[k]);
-  }
   plot.marks.emplace_back(Reference{.at = 0.0});
-  if (size > 0) plot.marks.emplace_back(std::move(band));
-  plot.marks.emplace_back(Line{.x = term.time_s, .y = term.demanded, .ink = Ink::muted});
-  if (has_law(term))
-    plot.marks.emplace_back(
-        Line{.x = term.time_s, .y = term.law, .ink = Ink::first, .label = "law, averaged alike", .width = kLawWidth});
+  if (std::min(term.demanded.size(), term.band.size()) < term.time_s.size()) return plot;
+  for (const std::span<const double> time : stretches_of(term.time_s)) {
+    const auto begin = static_cast<std::size_t>(time.data() - term.time_s.data());
+    const std::vector<double> x(time.begin(), time.end()), demanded = part_of(term.demanded, begin, time.size());
+    Band band{.x = x, .ink = Ink::muted, .label = std::string(begin == 0 ? kDemanded : "")};
+    for (std::size_t k = 0; k < time.size(); ++k) {
+      band.low.push_back(demanded[k] - term.band[begin + k]);
+      band.high.push_back(demanded[k] + term.band[begin + k]);
+    }
+    plot.marks.emplace_back(std::move(band));
+    plot.marks.emplace_back(Line{.x = x, .y = demanded, .ink = Ink::muted});
+    if (has_law(term))
+      plot.marks.emplace_back(Line{.x = x,
+                                   .y = part_of(term.law, begin, time.size()),
+                                   .ink = Ink::first,
+                                   .label = begin == 0 ? "law, averaged alike" : "",
+                                   .width = kLawWidth});
+  }
   return plot;
 }
 

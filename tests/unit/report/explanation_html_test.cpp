@@ -200,6 +200,22 @@ TEST(ReportHtml, SaysHowMuchAForbiddenFitWouldHaveTaken) {
   EXPECT_THAT(html, HasSubstr("with a possible value would have explained 61 % of the misfit"));
 }
 
+TEST(ReportHtml, DrawsNothingWhereWindowsOfTheMissingTermWereLeftOut) {
+  mismatch::Explanation explanation = example_explanation();
+  const auto lines_of = [&] {
+    const std::string html = explanation_to_html(explanation);
+    const std::size_t begin = html.find("<title>missing");
+    const std::string plot = html.substr(begin, html.find("</svg>", begin) - begin);
+    std::size_t lines = 0;
+    for (std::size_t at = 0; (at = plot.find("stroke-width=\"1.8\"", at)) != std::string::npos; ++at) ++lines;
+    return lines;
+  };
+  EXPECT_EQ(lines_of(), 1U);
+  mismatch::MissingTerm& term = explanation.missing.front();
+  for (std::size_t k = 300; k < term.time_s.size(); ++k) term.time_s[k] += 4.0;
+  EXPECT_EQ(lines_of(), 2U);
+}
+
 TEST(ReportHtml, TellsWhatWouldOnlyChangeFittedValuesFromWhatCouldStayUnseen) {
   const std::string html = explanation_to_html(consistent_example());
   EXPECT_THAT(html, HasSubstr("1 of 3 effects would be seen as soon as they matter, 1 could stay unseen"));

@@ -33,7 +33,7 @@ namespace sealwatch::text {
 [[nodiscard]] std::string as_condition(double condition);
 /// 0.667 -> "66.7 %": the seal condition as on operators' screens.
 [[nodiscard]] std::string condition_in_percent(double condition);
-/// Seal condition and its standard error: "72.35 ± 0.2 %".
+/// Seal condition and its standard error, as many decimals as that has: "72.4 ± 0.2 %".
 [[nodiscard]] std::string condition_with_std(double condition, double condition_std);
 /// How far estimates of it scatter: 0.00123 -> "0.12 %".
 [[nodiscard]] std::string spread_in_percent(double spread);

@@ -18,8 +18,8 @@ using testing::HasSubstr;
 
 constexpr const char* kArguments =
     "(double s1, double s2, double s3, double s4, double h, double p1, double p2, double p3, double p4, "
-    "double r1, double r2)";
-using Formula = double(double, double, double, double, double, double, double, double, double, double, double);
+    "double r1, double r2, double r3)";
+using Formula = double(double, double, double, double, double, double, double, double, double, double, double, double);
 
 /// All laws that act on a plant, one C file of them, loaded.
 class CompiledLaws {
@@ -89,10 +89,11 @@ TEST(LawFormulas, AreTheLaws) {
       std::array p = {1.0, 1.0, 1.0, 1.0};
       for (std::size_t i = 0; i < law.parameters.size(); ++i)
         p[i] = law.parameters[i].start.front() * (0.5 + share(random));
-      const auto [r1, r2] = roundings_of(law);
-      const LawOutput expected = law.evaluate(law_input(s, h, std::span(p).first(law.parameters.size()), {r1, r2}));
-      const double found = contribution(s[0], s[1], s[2], s[3], h, p[0], p[1], p[2], p[3], r1, r2);
-      const double found_rate = rate(s[0], s[1], s[2], s[3], h, p[0], p[1], p[2], p[3], r1, r2);
+      Roundings r = roundings_of(law);
+      for (double& width : r) width *= 0.5 + share(random);  // of another plant
+      const LawOutput expected = law.evaluate(law_input(s, h, std::span(p).first(law.parameters.size()), r));
+      const double found = contribution(s[0], s[1], s[2], s[3], h, p[0], p[1], p[2], p[3], r[0], r[1], r[2]);
+      const double found_rate = rate(s[0], s[1], s[2], s[3], h, p[0], p[1], p[2], p[3], r[0], r[1], r[2]);
       constexpr double kRounding = 1e-9;
       const double near_zero = 1e-10 * std::abs(p[0]);  // where large terms cancel
       EXPECT_NEAR(found, expected.contribution.value, kRounding * std::abs(expected.contribution.value) + near_zero)

@@ -1,7 +1,7 @@
 // The catalogue's laws as formulas for other tools: one text for C and for Modelica, whose function calls look alike.
 //
 //   s1..s4  the signals of the site, in the order of model/physics.hpp      h  hidden state
-//   p1..p4  the law's parameters, in the law's order           r1, r2  the law's roundings, in the plant's sizes
+//   p1..p4  the law's parameters, in the law's order           r1..r3  the law's roundings, in the plant's sizes
 //
 // Functions beside tanh, exp, log, sqrt, sin, abs (fabs): helper_functions() has them. A test compares every formula with
 // the law itself.

@@ -103,7 +103,7 @@ std::vector<ServiceAlarm> RecordingsFolder::alarms() const {
   }
   if (first != nullptr)
     alarms.push_back(recording_alarm(
-        "stuck", std::to_string(stuck) + " that are read stay in the folder, the first as it " + visible(first->stuck),
+        "stuck", std::to_string(stuck) + " read and still in the folder; the first " + visible(first->stuck),
         first->stuck_ns));
   return alarms;
 }

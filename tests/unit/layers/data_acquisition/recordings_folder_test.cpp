@@ -267,8 +267,8 @@ TEST_F(RecordingsFolderTest, WhatCouldNotBeMovedAwayIsMovedOnceItCan) {
   for (int looks = 0; looks < 4; ++looks)
     for (const Message& block : watched.look()) (void)layer.receive(block);
   ASSERT_THAT(watched.folder.alarms(), testing::SizeIs(1));
-  EXPECT_THAT(watched.folder.alarms()[0].text,
-              testing::AllOf(testing::HasSubstr("2 that are read stay"), testing::HasSubstr("it is not a folder")));
+  EXPECT_THAT(watched.folder.alarms()[0].text, testing::AllOf(testing::HasSubstr("2 read and still in the folder"),
+                                                              testing::HasSubstr("it is not a folder")));
   EXPECT_THAT(errors_, testing::SizeIs(3)) << "why it is rejected, and once of each that it stays";
   for (const char* folder : {"done", "rejected"}) fs::remove(directory_ / folder);
   EXPECT_TRUE(watched.look().empty());

@@ -31,7 +31,8 @@ bool may_be_written(const fs::path& directory) {
   return true;
 }
 
-/// The services make what is not there: what is needed is a place that may be written. A link that leads nowhere is there.
+/// The services make what is not there: what is needed is a place that may be written. A link that leads nowhere is
+/// there.
 Status check_directory(const std::string& directory) {
   fs::path place = fs::absolute(directory);
   std::error_code none;

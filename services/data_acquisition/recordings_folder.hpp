@@ -3,9 +3,9 @@
 // A file is read when it and its sidecar have not changed for ten looks, one a second: a copy in progress is left
 // alone, and one that changes while it is read is read again. When its test is concluded it moves to done/, when it
 // cannot be read to rejected/ with the reason beside it as NAME.error.txt (NAME.2 where that name is taken: nothing is
-// overwritten); its sidecar, which must be there when the recording is read, moves along. Where it cannot be moved, that
-// is told once and tried again with each look. Until then it stays, and a change of file or sidecar or a restart reads it
-// again: nothing is lost, and what comes twice is taken once, by its message id.
+// overwritten); its sidecar, which must be there when the recording is read, moves along. Where it cannot be moved,
+// that is told once and tried again with each look. Until then it stays, and a change of file or sidecar or a restart
+// reads it again: nothing is lost, and what comes twice is taken once, by its message id.
 #pragma once
 
 #include <cstdint>

@@ -349,8 +349,8 @@ void LayerRunner::tell_of_missing_blocks() {
   }
 }
 
-/// A service that is deaf to another has no inputs waiting and looks idle. One alarm for each topic: strangers may invent
-/// streams.
+/// A service that is deaf to another has no inputs waiting and looks idle. One alarm for each topic: strangers may
+/// invent streams.
 void LayerRunner::tell_of_missing_messages() {
   for (const Topic topic : inputs_) {
     const std::string name(name_of(topic));

@@ -197,8 +197,8 @@ bool StreamReader::is_due(Stream& stream, double now_s) const {
   return now_s - stream.waiting_since_s >= stream.wait_s;
 }
 
-/// A word on how far a stream goes that comes and goes is waited for no longer than one that stays. Whoever was stopped,
-/// or read its past, did not wait: what came meanwhile is still to be taken from the bus.
+/// A word on how far a stream goes that comes and goes is waited for no longer than one that stays. Whoever was
+/// stopped, or read its past, did not wait: what came meanwhile is still to be taken from the bus.
 void StreamReader::note_waiting(double now_s) {
   const double since_last_s = looked_s_ ? std::min(now_s - *looked_s_, limits_.longest_look_s) : 0.0;
   looked_s_ = now_s;

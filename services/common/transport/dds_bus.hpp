@@ -38,8 +38,8 @@ class DdsBus : public Bus {
 /// standard error.
 [[nodiscard]] Status check_dds_settings(const std::string& cyclonedds_uri);
 
-/// Others whom Cyclone DDS refused since the last call: by DDS Security, in its own words, or as they offer less than the
-/// services' readers ask for; nothing when it was nobody. One caller in a process.
+/// Others whom Cyclone DDS refused since the last call: by DDS Security, in its own words, or as they offer less than
+/// the services' readers ask for; nothing when it was nobody. One caller in a process.
 [[nodiscard]] std::optional<std::string> refused_by_dds();
 
 /// The same as the plain port.

@@ -241,7 +241,8 @@ TEST_F(StreamReaderTest, AReaderThatWasStoppedForLongHasWaitedForNothing) {
   EXPECT_THAT(reader_.missing_of_services("advisory"), IsEmpty());
 }
 
-/// DDS matches no reader that asks for more than its writer offers: of all that one, nothing comes, however it is asked.
+/// DDS matches no reader that asks for more than its writer offers: of all that one, nothing comes, however it is
+/// asked.
 TEST_F(StreamReaderTest, WhatOfAServiceThatBeatsDoesNotComeIsTold) {
   auto beats_until = [&, now_s = 0.0](double end_s) mutable {
     for (; now_s < end_s; now_s += 1.0) {

@@ -160,9 +160,8 @@ void Analysis::look_on_from(const Naming& laws) {
 }
 
 bool Analysis::is_among(const Effect& effect, const std::vector<Effect>& effects) {
-  return std::ranges::any_of(effects, [&](const Effect& other) {
-    return effect.law->id == other.law->id && effect.element == other.element;
-  });
+  return std::ranges::any_of(
+      effects, [&](const Effect& other) { return effect.law->id == other.law->id && effect.element == other.element; });
 }
 
 bool Analysis::take_beside_values(const WrongDatasheet& wrong, const std::vector<std::string>& laws,

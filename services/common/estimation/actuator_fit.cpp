@@ -9,6 +9,7 @@
 #include "services/common/estimation/fit_report.hpp"
 #include "services/common/estimation/growing_start.hpp"
 #include "services/common/estimation/interpolation_error.hpp"
+#include "services/common/estimation/own_jumps.hpp"
 #include "services/common/estimation/pem_search.hpp"
 #include "services/common/estimation/piecewise_start.hpp"
 #include "services/common/model/plants/eha_switched/estimation/closed_valves.hpp"
@@ -81,7 +82,7 @@ bool better(const PemOptimum& a, const PemOptimum& b, const ActuatorFitOptions& 
 
 // From the asset's values; where nothing can be simulated with them, or the search does not converge, from those of the
 // recordings' pieces, then from multiples of the asset's. A plant of one's own, of which nothing better is known, also
-// from those of the recordings' beginnings where the search converged far off.
+// from those of the recordings' pieces, where it jumps, and of their beginnings where the search converged far off.
 Result<PemOptimum> search_from_several_starts(const PemProblem& problem, const AssetConfig& asset,
                                               std::span<const TimeSeries> recordings,
                                               const ActuatorFitOptions& options) {
@@ -96,7 +97,8 @@ Result<PemOptimum> search_from_several_starts(const PemProblem& problem, const A
   const auto take_better = [&](Result<PemOptimum> other) {
     if (other && (!best || better(*other, *best, options))) best = std::move(other);
   };
-  if (options.cut_into_pieces && !(best && best->converged))
+  const bool jumps = has_own_jumps(*problem.recordings.front().simulation, recordings.front());
+  if (options.cut_into_pieces && (!(best && best->converged) || (jumps && wrong())))
     if (auto start = piecewise_start(problem, asset, recordings, options))
       take_better(search(problem, std::move(*start), options));
   if (may_grow && wrong())

@@ -43,7 +43,7 @@ ChannelFigures figures(const std::vector<double>& recorded, const std::vector<do
                        const std::vector<double>& weights, const PastInput& past) {
   std::vector<double> plain(recorded.size()), residual(recorded.size());
   for (std::size_t k = 0; k < residual.size(); ++k) {
-    plain[k] = (recorded[k] - simulated[k]) / noise_std;
+    plain[k] = weights[k] == 0.0 ? 0.0 : (recorded[k] - simulated[k]) / noise_std;  // beside a jump it tells nothing
     residual[k] = weights[k] * plain[k];
   }
   return {.rms = root_mean_square(plain),

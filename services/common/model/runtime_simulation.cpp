@@ -206,43 +206,71 @@ Result<SimulatedOutputs> RuntimePlantSimulation::run_driven_by(const RecordedInp
 
 namespace {
 
+constexpr double kAlike = 0.5;
+bool are_alike(double left, double right) {
+  return std::abs(right - left) <= kAlike * (std::abs(right) + std::abs(left));
+}
+
 /// The slope at a sample from those on both of its sides. Where a change of the parameter moves a jump over the sample, one
 /// of them is the jump's height and no slope: the other one counts, which is the smaller.
 double beside_jumps(double left, double right) {
-  constexpr double kAlike = 0.5;
-  if (std::abs(right - left) <= kAlike * (std::abs(right) + std::abs(left))) return 0.5 * (left + right);
+  if (are_alike(left, right)) return 0.5 * (left + right);
   return std::abs(left) < std::abs(right) ? left : right;
+}
+
+/// Whether a channel's jumps are moved over so many samples that both sides of one are hit. Differences of next to nothing
+/// are none.
+bool moves_jumps_too_far(const RowMatrix& left, const RowMatrix& right) {
+  constexpr double kNothing = 1e-2, kMost = 0.02;  // of the largest; of the samples
+  for (Eigen::Index channel = 0; channel < left.cols(); ++channel) {
+    const auto one = left.col(channel), other = right.col(channel);
+    const double least = kNothing * std::max(one.cwiseAbs().maxCoeff(), other.cwiseAbs().maxCoeff());
+    double moved = 0.0;
+    for (Eigen::Index row = 0; row < one.size(); ++row)
+      if (std::max(std::abs(one(row)), std::abs(other(row))) > least && !are_alike(one(row), other(row))) moved += 1.0;
+    if (moved > kMost * static_cast<double>(one.size())) return true;
+  }
+  return false;
 }
 
 }  // namespace
 
+// A step is far above the integration's errors, and central differences err by its square. After many jumps a small one
+// moves the last of them by many samples: then it is a tenth.
 Result<SimulatedOutputs> RuntimePlantSimulation::run_by_differences(const RecordedInput& input,
                                                                     const ModelValues& values,
                                                                     std::span<const FreeQuantity> free,
                                                                     const SimulationOptions& options) const {
-  SimulationOptions tight = options;
-  tight.relative_tolerance = std::min(options.relative_tolerance, 1e-7);
-  auto outputs = run_driven_by(input, values, {}, tight, nullptr);
-  if (!outputs) return outputs;
-  const Eigen::Index rows = outputs->values.size(), columns = static_cast<Eigen::Index>(free.size());
-  outputs->sensitivities.resize(rows, columns);
-  for (Eigen::Index k = 0; k < columns; ++k) {
-    const FreeQuantity& quantity = free[static_cast<std::size_t>(k)];
-    constexpr double kShare = 1e-3;  // of the value: central differences then err by its square, and far above steps
-    const double value = quantity.in(values), size = std::abs(value) > 0.0 ? std::abs(value) : 1.0;
+  constexpr double kLargest = 1e-3, kSmallest = 1e-5;  // share of the value
+  constexpr double kErrors = 1e-4;                     // of the share
+  Result<SimulatedOutputs> outputs;
+  RowMatrix sensitivities;
+  const auto changed_by = [&](const FreeQuantity& quantity, double step, const SimulationOptions& tight) {
     ModelValues changed = values;
-    quantity.in(changed) = value + kShare * size;
-    const auto above = run_driven_by(input, changed, {}, tight, nullptr);
-    quantity.in(changed) = value - kShare * size;
-    const auto below = run_driven_by(input, changed, {}, tight, nullptr);
-    if (!above) return above;
-    if (!below) return below;
-    for (Eigen::Index row = 0; row < rows; ++row) {
-      const double here = outputs->values.data()[row];
-      outputs->sensitivities(row, k) = beside_jumps((here - below->values.data()[row]) / (kShare * size),
-                                                    (above->values.data()[row] - here) / (kShare * size));
+    quantity.in(changed) += step;
+    return run_driven_by(input, changed, {}, tight, nullptr);
+  };
+  double share = 10.0 * kLargest;
+  for (bool too_far = true; too_far;) {
+    share /= 10.0, too_far = false;
+    SimulationOptions tight = options;
+    tight.relative_tolerance = std::min(options.relative_tolerance, kErrors * share);
+    outputs = run_driven_by(input, values, {}, tight, nullptr);
+    if (!outputs) return outputs;
+    const RowMatrix& here = outputs->values;
+    sensitivities.resize(here.size(), std::ssize(free));
+    for (std::size_t k = 0; k < free.size() && !too_far; ++k) {
+      const double value = std::abs(free[k].in(values)), step = share * (value > 0.0 ? value : 1.0);
+      const auto above = changed_by(free[k], step, tight), below = changed_by(free[k], -step, tight);
+      if (!above) return above;
+      if (!below) return below;
+      const RowMatrix left = (here - below->values) / step, right = (above->values - here) / step;
+      too_far = share > kSmallest && moves_jumps_too_far(left, right);
+      for (Eigen::Index row = 0; row < here.size(); ++row)
+        sensitivities(row, static_cast<Eigen::Index>(k)) = beside_jumps(left.data()[row], right.data()[row]);
     }
   }
+  outputs->sensitivities = std::move(sensitivities);
   return outputs;
 }
 

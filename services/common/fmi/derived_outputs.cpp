@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "services/common/fmi/derivative_points.hpp"
 
@@ -12,6 +13,13 @@ namespace {
 /// row for each point.
 struct Influence {
   std::vector<std::vector<double>> on_derivatives, on_outputs;
+  std::vector<std::vector<double>> derivatives = {};  ///< themselves, of a parameter
+};
+
+/// c, and whether parameters change it; c is 0 where an output does not follow the derivative.
+struct Following {
+  double factor = 0.0;
+  bool scaled = false;
 };
 
 class DerivedOutputs {
@@ -52,38 +60,61 @@ class DerivedOutputs {
       for (std::size_t k = 0; k < upper->size(); ++k) {
         one.on_derivatives.push_back(differences((*upper)[k].derivatives, (*lower)[k].derivatives));
         one.on_outputs.push_back(differences((*upper)[k].outputs, (*lower)[k].outputs));
+        one.derivatives.push_back((*upper)[k].derivatives);
       }
     }
   }
 
-  /// c of an element of the outputs; 0 where it does not follow the derivative.
-  [[nodiscard]] double factor(std::size_t state, std::size_t output, std::size_t least_influences) const {
-    constexpr double kTolerance = 1e-3;  // of an influence
-    constexpr double kNothing = 1e-4;    // of the largest
+  /// Of an element of the outputs.
+  [[nodiscard]] Following following(std::size_t state, std::size_t output, std::size_t least_influences) const {
+    constexpr double kNothing = 1e-4;  // of the largest
     double largest = 0.0, products = 0.0, squares = 0.0;
-    each(state, output, [&](std::size_t, double rate, double) { largest = std::max(largest, std::abs(rate)); });
-    each(state, output, [&](std::size_t, double rate, double value) {
-      if (std::abs(rate) > kNothing * largest) products += rate * value, squares += rate * rate;
-    });
-    if (!(squares > 0.0)) return 0.0;
+    for (const Influence& one : influences_)
+      for (const auto& rates : one.on_derivatives) largest = std::max(largest, std::abs(rates[state]));
+    const auto moves = [&](const Influence& one, std::size_t point) {
+      return std::abs(one.on_derivatives[point][state]) > kNothing * largest;
+    };
+    for (const Influence& one : influences_)
+      for (std::size_t point = 0; one.derivatives.empty() && point < one.on_outputs.size(); ++point) {
+        if (!moves(one, point)) continue;
+        const double rate = one.on_derivatives[point][state];
+        products += rate * one.on_outputs[point][output], squares += rate * rate;
+      }
     const double c = products / squares;
-    bool follows = std::isfinite(c);
-    std::vector<bool> moves(influences_.size());
-    each(state, output, [&](std::size_t influence, double rate, double value) {
-      if (std::abs(rate) <= kNothing * largest) return;
-      moves[influence] = true;
-      if (std::abs(value - c * rate) > kTolerance * std::abs(c * rate)) follows = false;
-    });
-    const auto moving = static_cast<std::size_t>(std::ranges::count(moves, true));
-    return follows && moving >= least_influences ? c : 0.0;
+    if (!(squares > 0.0) || !std::isfinite(c) || c == 0.0) return {};
+    Following result{.factor = c};
+    std::size_t moving = 0;
+    for (const Influence& one : influences_) {
+      bool any = false, follows = true;
+      for (std::size_t point = 0; point < one.on_outputs.size(); ++point) {
+        if (!moves(one, point)) continue;
+        any = true;
+        follows = follows && is_same(one.on_outputs[point][output], c * one.on_derivatives[point][state]);
+      }
+      if (!any) continue;
+      if (!follows && !scales(one, state, output, c)) return {};
+      moving += follows ? 1 : 0;
+      result.scaled = result.scaled || !follows;
+    }
+    return moving >= least_influences ? result : Following();
   }
 
  private:
-  template <typename Look>
-  void each(std::size_t state, std::size_t output, const Look& look) const {
-    for (std::size_t k = 0; k < influences_.size(); ++k)
-      for (std::size_t point = 0; point < influences_[k].on_outputs.size(); ++point)
-        look(k, influences_[k].on_derivatives[point][state], influences_[k].on_outputs[point][output]);
+  static bool is_same(double value, double expected) {
+    constexpr double kTolerance = 1e-3;  // of an influence
+    return std::abs(value - expected) <= kTolerance * std::abs(expected);
+  }
+
+  /// Whether what the parameter does beside c df is dc f, with one dc at all points.
+  static bool scales(const Influence& one, std::size_t state, std::size_t output, double c) {
+    std::optional<double> dc;
+    for (std::size_t point = 0; point < one.derivatives.size(); ++point) {
+      const double beside = one.on_outputs[point][output] - c * one.on_derivatives[point][state];
+      const double rate = one.derivatives[point][state];
+      if (dc ? !is_same(beside, *dc * rate) : rate == 0.0) return false;
+      if (!dc) dc = beside / rate;
+    }
+    return dc.has_value();
   }
 
   void add(const std::vector<Partials>& partials, std::vector<double> Partials::*of_derivatives,
@@ -117,12 +148,15 @@ Result<std::vector<DerivedOutput>> outputs_of_derivatives(const FmuBlock& block,
   if (const Status begun = derived.look_at_states_and_inputs(); !begun) return fail(begun.error());
   for (const std::size_t state : states)
     for (const std::size_t variable : variables)
-      if (derived.factor(state, block.variables[variable].place, 1) != 0.0) found.push_back({variable, state});
+      if (derived.following(state, block.variables[variable].place, 1).factor != 0.0)
+        found.push_back({variable, state});
   if (found.empty()) return found;  // as nearly always: then parameters, each a start of its own, are not looked at
   derived.look_at_parameters();
   std::erase_if(found, [&](DerivedOutput& one) {
     const Port& port = block.variables[one.variable];
-    one.factor = derived.factor(one.state, port.place, 2) * port.unit.factor / block.states[one.state].factor;
+    const Following following = derived.following(one.state, port.place, 2);
+    one.factor = following.factor * port.unit.factor / block.states[one.state].factor;
+    one.scaled = following.scaled;
     return one.factor == 0.0;
   });
   return found;

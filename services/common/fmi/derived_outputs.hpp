@@ -4,7 +4,8 @@
 //   dw/dk = c d(dx/dt)/dk       for every state, input and parameter k that moves dx/dt, with one c at all points
 //
 // What moves w alone, such as a sensor's own parameter, says nothing. One k alone proves nothing: a velocity moves as
-// the derivative of its way does and is not computed from it.
+// the derivative of its way does and is not computed from it. A parameter may change c: a net force is the mass times the
+// derivative, and does not move with the mass.
 #pragma once
 
 #include <span>
@@ -17,6 +18,7 @@ namespace sealwatch::fmi {
 struct DerivedOutput {
   std::size_t variable = 0, state = 0;  ///< places in FmuBlock::variables, FmuBlock::states
   double factor = 1.0;                  ///< c, in SI
+  bool scaled = false;                  ///< parameters change c: it may be one force of one part, too
 };
 
 /// Of these variables and states those that belong together; an Error where the unit does not even start.

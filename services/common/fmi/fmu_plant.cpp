@@ -380,7 +380,7 @@ class Builder {
       for (const DerivedOutput& one : *derived)
         if (one.state == pair.state && one.variable == pair.variable)
           remarks.push_back(not_reached(*pair.site, *pair.adds, *pair.output, section_.variables[one.variable].name,
-                                        factor_in_words(one)));
+                                        factor_in_words(one), one.scaled));
   }
 
   /// As a formula has it: "0.102[s2/m]*".
@@ -396,12 +396,15 @@ class Builder {
   [[nodiscard]] static std::string not_reached(const equations::TextSite& site,
                                                const std::pair<std::string, std::string>& adds,
                                                const equations::TextOutput& output, const std::string& variable,
-                                               const std::string& factor) {
+                                               const std::string& factor, bool scaled) {
     const std::string symbol = site.symbol.empty() ? site.element + "_law" : site.symbol;
-    return "outputs." + output.channel.name + ": the FMU computes " + variable + " from the derivative of " +
-           adds.first + ", so that what " + site.key + ".adds_to adds to " + adds.first +
-           " does not reach it, and results with this output can be false: give the site the symbol " + symbol +
-           " and write (" + variable + " + " + factor + "(" + adds.second + ")*" + symbol + ") for " + variable +
+    const std::string of = scaled ? " is in proportion to" : " from",
+                      unless = scaled ? "unless it is the force or flow of one part alone, " : "";
+    return "outputs." + output.channel.name + (scaled ? ": in the FMU " : ": the FMU computes ") + variable + of +
+           " the derivative of " + adds.first + ", so that what " + site.key + ".adds_to adds to " + adds.first +
+           " does not reach it, and results with this output can be false: " + unless + "give the site the symbol " +
+           symbol + " and write (" + variable + " + " + factor + "(" + adds.second + ")*" + symbol + ") for " +
+           variable + (scaled ? ", with what parameters make of " + factor.substr(0, factor.find('*')) : "") +
            ", or let the symbol stand in an input of the FMU in place of adds_to, or take the output out of the "
            "channels";
   }

@@ -22,9 +22,9 @@ using testing::IsEmpty;
 /// The spring that gives its acceleration too.
 TestUnit feeling_spring() {
   TestUnit unit = spring_return("fmu_spring_feels2");
-  const char* const outputs[] = {"acceleration", "drive", "reaction", "velocity"};
+  const char* const outputs[] = {"acceleration", "drive", "reaction", "velocity", "net"};
   std::string structure = "<Outputs><Unknown index=\"10\"/>";
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < 5; ++k) {
     unit.variables += "<ScalarVariable name=\"" + std::string(outputs[k]) + "\" valueReference=\"" +
                       std::to_string(5001 + k) + "\" causality=\"output\"><Real/></ScalarVariable>\n";
     structure += "<Unknown index=\"" + std::to_string(11 + k) + "\"/>";
@@ -71,6 +71,7 @@ std::string unit_file(const TestFolder& folder, const std::string& name, const s
     drive: {variable: drive, unit: N}
     reaction: {variable: reaction, unit: N}
     speed: {variable: velocity, unit: m/s}
+    net: {variable: net, unit: N}
 )yaml";
   return plant_file(folder, name, section, kPosition + outputs,
                     "  x: {unit: m, start: position, size: 0.02}\n"
@@ -92,6 +93,16 @@ TEST(DerivedOutputs, AnAccelerometerThatMissesALawIsNamedWithWhatToDo) {
                                 HasSubstr("elements.piston.sites[0].adds_to"), HasSubstr("give the site the symbol"),
                                 HasSubstr("(felt + 0.101937[s2/m]*(-1/M)*piston_law)"),
                                 HasSubstr("take the output out of the channels"))));
+}
+
+// Its mass is a parameter of the plant, which moves the acceleration and not the force.
+TEST(DerivedOutputs, ANetForceIsNamedAsWhatMayBeOne) {
+  const TestFolder folder;
+  EXPECT_THAT(
+      remarks_on(unit_file(folder, "net_force", "  load_cell: {value: net, unit: N, noise_std: 0.1}\n")),
+      ElementsAre(AllOf(HasSubstr("outputs.load_cell: in the FMU net is in proportion to the derivative of v"),
+                        HasSubstr("unless it is the force or flow of one part alone"),
+                        HasSubstr("(net + 20[kg]*(-1/M)*piston_law) for net, with what parameters make of 20[kg]"))));
 }
 
 // explain and fit, which load the plant, tell it from there.

@@ -1,11 +1,12 @@
 /* A valve positioner with a return spring: M dv/dt = k_F u - F_v v - k_s x, dx/dt = v. NOWHERE: x begins as no number. UNSET: so does F_v. SATURATES: the sensor of x at 0.5.
- * FEELS: it gives its acceleration in g, the force of its drive, that of spring and friction, and its velocity too. */
+ * FEELS: it gives its acceleration in g, the force of its drive, that of spring and friction, its velocity, and the
+ * net force too. */
 #define MODEL_TOKEN "{sealwatch-test-spring-return}"
 #define STATES 2
 #define INPUTS 1
 #define PARAMETERS 4
 #ifdef FEELS
-#define OUTPUTS 5
+#define OUTPUTS 6
 #else
 #define OUTPUTS 1
 #endif
@@ -48,5 +49,6 @@ static void model_outputs(double t, const double* x, const double* u, const doub
   y[2] = p[K_F] * u[0];
   y[3] = p[F_V] * x[1] + p[K_S] * x[0];
   y[4] = x[1];
+  y[5] = p[K_F] * u[0] - p[F_V] * x[1] - p[K_S] * x[0];
 #endif
 }

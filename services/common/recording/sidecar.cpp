@@ -4,6 +4,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -118,11 +119,22 @@ Status read_entry(const KeyValue& item, const PlantDescription& plant, Sidecar& 
   return {};
 }
 
+/// A plant's or an asset's file with the recording's name, by keys that those have.
+Status check_is_no_other_file(const YAML::Node& document) {
+  constexpr std::array kOthers = {"model", "outputs", "states", "parameters", "channels", "fmu", "physics"};
+  for (const auto& entry : document)
+    if (entry.first.IsScalar() && std::ranges::find(kOthers, entry.first.Scalar()) != kOthers.end())
+      return fail(error_at(place_of(entry.first.Mark().line + 1, entry.first.Scalar()), {},
+                           "is a key of a plant or asset file", "give that file another name than the recording's"));
+  return {};
+}
+
 Result<Sidecar> read_document(const YAML::Node& document, const PlantDescription& plant) {
   Sidecar out;
   if (!document.IsDefined() || document.IsNull()) return out;
   if (!document.IsMap())
     return fail(error_at(place_of(document.Mark().line + 1, ""), {}, "a sidecar must be a mapping of keys to values"));
+  if (const Status own = check_is_no_other_file(document); !own) return fail(own.error());
   const Result<std::vector<KeyValue>> items = entries(document, "", kKeys);
   if (!items) return fail(items.error());
   for (const KeyValue& item : *items)
@@ -177,6 +189,7 @@ Result<std::string> parse_sidecar_value(const std::string& text, const std::stri
   const Result<YAML::Node> document = load_document(text);
   if (!document) return fail(document.error());
   if (!document->IsMap()) return std::string();  // read_document says what is wrong with it
+  if (const Status own = check_is_no_other_file(*document); !own) return fail(own.error());
   if (const auto known = entries(*document, "", kKeys); !known) return fail(known.error());  // 'asset' for 'asset_id'
   const YAML::Node value = (*document)[key];
   return value.IsDefined() && value.IsScalar() ? value.Scalar() : std::string();

@@ -67,6 +67,16 @@ TEST(SidecarText, ErrorsNameLineAndKey) {
   EXPECT_THAT(error_of("test: pst\nnote: [open\n"), HasSubstr("is not YAML"));
 }
 
+// An asset's file may have the keys of a sidecar as well.
+TEST(SidecarText, APlantOrAnAssetWithTheRecordingsNameIsNamed) {
+  EXPECT_THAT(error_of("name: tank\ninputs: {}\noutputs: {}\n"),
+              HasSubstr("line 3, key outputs: is a key of a plant or asset file; give that file another name"));
+  EXPECT_THAT(error_of("asset_id: X\nmodel: tank.yaml\n"),
+              HasSubstr("line 2, key model: is a key of a plant or asset"));
+  EXPECT_THAT(parse_sidecar_value("asset_id: X\nmodel: tank.yaml\n", "asset_id").error().describe(),
+              HasSubstr("give that file another name than the recording's"));
+}
+
 TEST(SidecarText, AQuotedTextThatIsNeverClosedIsNamed) {
   EXPECT_THAT(error_of("test: pst\nasset_id: \"XT03\nnote: a\n"),
               HasSubstr("line 2, key asset_id: 'XT03 note: a ': is not YAML: the quoted text has no closing quote"));

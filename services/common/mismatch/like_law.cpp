@@ -46,7 +46,7 @@ std::optional<LikeLaw> most_like(const Candidate& form, const Effect& law, const
                                  const PlantDescription& plant) {
   const std::vector<std::size_t> strengths = strengths_of(*form.law);
   const bool here = form.element == law.element && form.law->kind == law.law->kind && form.law->evaluate;
-  if (!here || form.law->hidden || law.law->hidden || strengths.size() != 1) return std::nullopt;
+  if (paths.empty() || !here || form.law->hidden || law.law->hidden || strengths.size() != 1) return std::nullopt;
   const std::size_t strength = strengths.front();
   const LawBounds bounds = law_bounds(plant, form.law->parameters[strength]);
   const Roundings roundings = roundings_of(plant, *form.law);

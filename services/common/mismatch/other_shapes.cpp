@@ -45,8 +45,8 @@ const PlantDescription& plant_of(const FittedModel& model) {
 }
 
 // Start values of the law of an effect at its usual size and on its shape's grid; of its other forms, of laws that
-// contain it and of the closed forms (`forms`) that bear its id, also from where it ended (`term`); of all closed forms
-// that can do about what it does, from where they do.
+// contain it and of the closed forms (`forms`) that bear its id, also from where it ended (`term`); in a gross misfit of
+// all closed forms that can do about what it does, from where they do.
 std::vector<std::vector<LawStart>> other_starts(const Effect& effect, const PhysicsTerm& term, const Screening& asked,
                                                 const std::vector<Candidate>& forms, const FittedModel& model,
                                                 bool gross) {
@@ -71,9 +71,12 @@ std::vector<std::vector<LawStart>> other_starts(const Effect& effect, const Phys
          candidate.element == effect.element && candidate.law->limit == effect.law->id && point < candidate.grid.size();
          ++point)
       add(candidate, from_fitted(candidate, point, term));
+  // Near the noise it is a closed form's turn only where all laws leave something (try_closed_forms): it would take the
+  // place of a law that the machine follows but for a little.
   const std::vector<double> found = parameters_in(effect, model.asset);
-  const std::vector<TermPath> paths =
-      forms.empty() || found.empty() ? std::vector<TermPath>{} : term_paths(model, effect.element, *effect.law, found);
+  std::vector<TermPath> paths;
+  if (!forms.empty() && !found.empty() && excess(model) > kGross)
+    paths = term_paths(model, effect.element, *effect.law, found);
   for (const Candidate& form : forms) {
     if (form.law == effect.law || form.element != effect.element) continue;
     if (const auto like = most_like(form, effect, paths, plant_of(model)); like && like->lacks < kAlike)

@@ -591,7 +591,8 @@ NameAndUnitText split_header_cell(std::string_view cell) {
       return {std::string(trim(cell.substr(0, blank))), std::string(word)};
     const std::string_view unit = trim(cell.substr(at + 1, cell.size() - at - 2));
     const bool derivative = open == '(' && at == 3 && cell.starts_with("der");  // of a state s, say
-    if (is_index(unit) || derivative) continue;
+    const bool counts = open == '{' && unit.find_first_not_of("0123456789") == std::string_view::npos;
+    if (is_index(unit) || derivative || counts) continue;
     if (open == '[') return {std::string(trim(cell.substr(0, at))), std::string(unit_before_words(unit))};
     if (is_unit_or_time(unit)) return {std::string(trim(cell.substr(0, at))), std::string(unit)};
   }

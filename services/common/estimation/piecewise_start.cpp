@@ -36,13 +36,15 @@ Jumps jumps_of(const PemProblem& problem, std::span<const TimeSeries> recordings
 }
 
 /// How many pieces are cut of a recording, time after time. At first few of them have a jump, and none has two.
-std::vector<std::size_t> numbers_of_pieces(const Jumps& jumps) {
-  std::size_t most = 0;
+std::vector<std::size_t> numbers_of_pieces(const Jumps& jumps, std::span<const TimeSeries> recordings) {
+  std::size_t most = 0, longest = 0;
+  for (const TimeSeries& recorded : recordings) longest = std::max(longest, recorded.time_s.size());
   for (const auto& recording : jumps)
     for (const auto& channel : recording) most = std::max(most, channel.size());
   if (most == 0) return {kPieces.begin(), kPieces.end()};
   std::vector<std::size_t> numbers;
-  for (std::size_t count = kPerJump * (most + 1); count > 1; count /= 2) numbers.push_back(count);
+  const std::size_t first = std::min(kPerJump * (most + 1), longest / kFewestSamples);
+  for (std::size_t count = first; count > 1; count /= 2) numbers.push_back(count);
   return numbers;
 }
 
@@ -150,7 +152,7 @@ std::optional<PemPoint> piecewise_start(const PemProblem& problem, const AssetCo
   std::vector<Eigen::VectorXd> weights;
   for (std::size_t k = 0; k < recordings.size(); ++k)
     weights.push_back(weights_beside(jumps[k], recordings[k].time_s.size()));
-  for (const std::size_t count : numbers_of_pieces(jumps)) {
+  for (const std::size_t count : numbers_of_pieces(jumps, recordings)) {
     const Pieces pieces = cut(recordings, weights, count);
     Result<PemProblem> cut_problem = make_pem_problem(asset, pieces.samples, pieces.groups);
     if (!cut_problem) return {};

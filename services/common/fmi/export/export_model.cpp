@@ -140,7 +140,7 @@ class Exporter {
         << "#define MODEL_TOKEN \"" << token_ << "\"\n"
         << "#define STATES " << states_.size() << "\n#define INPUTS " << inputs_.size() << "\n#define PARAMETERS "
         << parameters_.size() << "\n#define OUTPUTS " << outputs_.size()
-        << "\n#include <math.h>\n#include <string.h>\n\n";
+        << "\n#include <math.h>\n#include <stddef.h>\n#include <string.h>\n\n";
     for (const auto& [name, rows] :
          {std::pair{"start_states", &states_}, {"start_inputs", &inputs_}, {"start_parameters", &parameters_}}) {
       out << "static const double " << name << "[] = {";
@@ -180,6 +180,45 @@ static void model_outputs(double t, const double* x, const double* u, const doub
   plant_outputs(t, x, u, p, e, y);
 }
 
+)c" + partials();
+  }
+
+  /// Laws are known as functions alone: with one of them there are no exact derivatives.
+  [[nodiscard]] bool has_partials() const { return terms_.active.empty(); }
+
+  /// d (rates, outputs) / d (states, inputs), row by row.
+  [[nodiscard]] std::string partials() {
+    if (!has_partials()) return "";
+    std::vector<std::size_t> variables;
+    for (std::size_t k = 0; k < states_.size(); ++k) variables.push_back(parts_.places.states + k);
+    for (const std::size_t input : parts_.used_inputs) variables.push_back(parts_.places.inputs + input);
+    for (const std::size_t input : rates_) variables.push_back(parts_.places.rates + input);
+    std::vector<Node> nodes;
+    for (const auto* rows : {&parts_.derivatives.values, &parts_.outputs.values})
+      for (const Node row : *rows)
+        for (const std::size_t variable : variables) nodes.push_back(parts_.expressions.derivative(row, variable));
+    return c_function("plant_partials", parts_, nodes, rates_) + R"c(
+#define MODEL_PARTIALS
+static int model_directional(double t, const double* x, const double* u, const double* p, const unsigned* unknowns,
+                             size_t nu, const unsigned* knowns, size_t nk, const double* seed, double* sensitivity) {
+  enum { kColumns = STATES + INPUTS };
+  const double e[SITES + 1] = {0.0};
+  double partials[(STATES + OUTPUTS) * kColumns + 1];
+  size_t row, column;
+  plant_partials(t, x, u, p, e, partials);
+  for (row = 0; row < nu; ++row) {
+    const size_t of = unknowns[row] / 1000U, index = unknowns[row] % 1000U;
+    if (!(of == 2 && index < STATES) && !(of == 5 && index < OUTPUTS)) return 0;
+    sensitivity[row] = 0.0;
+    for (column = 0; column < nk; ++column) {
+      const size_t by = knowns[column] / 1000U, place = knowns[column] % 1000U;
+      if (!(by == 1 && place < STATES) && !(by == 3 && place < INPUTS)) return 0;
+      sensitivity[row] +=
+          seed[column] * partials[(of == 2 ? index : STATES + index) * kColumns + (by == 1 ? place : STATES + place)];
+    }
+  }
+  return 1;
+}
 )c";
   }
 
@@ -188,8 +227,9 @@ static void model_outputs(double t, const double* x, const double* u, const doub
     out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"2.0\" modelName=\""
         << escaped(plant_.description.name) << "\" guid=\"" << token_ << "\" description=\""
         << escaped(plant_.description.meaning) << "\" generationTool=\"sealwatch\" numberOfEventIndicators=\"0\">\n"
-        << "<ModelExchange modelIdentifier=\"" << identifier
-        << "\" completedIntegratorStepNotNeeded=\"true\">\n<SourceFiles><File name=\"model.c\"/></SourceFiles>\n"
+        << "<ModelExchange modelIdentifier=\"" << identifier << "\" completedIntegratorStepNotNeeded=\"true\""
+        << (has_partials() ? " providesDirectionalDerivative=\"true\"" : "")
+        << ">\n<SourceFiles><File name=\"model.c\"/></SourceFiles>\n"
            "</ModelExchange>\n";
     units(out);
     out << "<ModelVariables>\n";
@@ -219,7 +259,7 @@ static void model_outputs(double t, const double* x, const double* u, const doub
     out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"3.0\" modelName=\""
         << escaped(plant_.description.name) << "\" instantiationToken=\"" << token_ << "\" description=\""
         << escaped(plant_.description.meaning) << "\" generationTool=\"sealwatch\">\n<ModelExchange modelIdentifier=\""
-        << identifier << "\"/>\n";
+        << identifier << (has_partials() ? "\" providesDirectionalDerivatives=\"true" : "") << "\"/>\n";
     units(out);
     out << "<ModelVariables>\n<Float64 name=\"time\" valueReference=\"0\" causality=\"independent\" "
            "variability=\"continuous\" unit=\"s\"/>\n";

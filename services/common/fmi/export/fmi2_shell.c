@@ -13,6 +13,12 @@
  *   static int model_event(double t, double* x, const double* u, const double* p, double* d, double* next_time);
  *                                                      returns whether it changed states; next_time: INFINITY or later
  *
+ * and where its derivatives are known
+ *   MODEL_PARTIALS                                     is defined
+ *   static int model_directional(double t, const double* x, const double* u, const double* p, const unsigned* unknowns,
+ *                                size_t nu, const unsigned* knowns, size_t nk, const double* seed, double* sensitivity);
+ *                                                      by value references; returns whether it has those
+ *
  * Value references: states from 1000, derivatives from 2000, inputs from 3000, parameters from 4000, outputs from 5000.
  */
 #include <math.h>
@@ -182,7 +188,13 @@ NONE_OF(int, Integer)
 NONE_OF(int, Boolean)
 NONE_OF(const char*, String)
 
-#ifndef MODEL_DIRECTIONAL
+#if defined(MODEL_PARTIALS)
+API int fmi2GetDirectionalDerivative(void* c, const unsigned* unknowns, size_t nu, const unsigned* knowns, size_t nk,
+                                     const double* seed, double* sensitivity) {
+  const Model* m = c;
+  return model_directional(m->time, m->x, m->u, m->p, unknowns, nu, knowns, nk, seed, sensitivity) ? kOk : kError;
+}
+#elif !defined(MODEL_DIRECTIONAL)
 API int fmi2GetDirectionalDerivative(void* c, const unsigned* unknowns, size_t nu, const unsigned* knowns, size_t nk,
                                      const double* seed, double* sensitivity) {
   (void)c, (void)unknowns, (void)nu, (void)knowns, (void)nk, (void)seed, (void)sensitivity;

@@ -45,8 +45,10 @@ FAILS(FreeFMUState, void** state)
 FAILS(SerializedFMUStateSize, void* state, size_t* size)
 FAILS(SerializeFMUState, void* state, uint8_t* bytes, size_t size)
 FAILS(DeserializeFMUState, const uint8_t* bytes, size_t size, void** state)
+#if !defined(MODEL_PARTIALS)
 FAILS(GetDirectionalDerivative, const Ref* unknowns, size_t nu, const Ref* knowns, size_t nk, const double* seed,
       size_t n_seed, double* sensitivity, size_t n_sensitivity)
+#endif
 FAILS(GetAdjointDerivative, const Ref* unknowns, size_t nu, const Ref* knowns, size_t nk, const double* seed,
       size_t n_seed, double* sensitivity, size_t n_sensitivity)
 FAILS(GetOutputDerivatives, const Ref* references, size_t n, const int32_t* orders, double* values, size_t size)

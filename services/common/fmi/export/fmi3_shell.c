@@ -130,6 +130,14 @@ EXPORT int fmi3SetFloat64(void* c, const Ref* references, size_t n, const double
   }
   return kOk;
 }
+#if defined(MODEL_PARTIALS)
+EXPORT int fmi3GetDirectionalDerivative(void* c, const Ref* unknowns, size_t nu, const Ref* knowns, size_t nk,
+                                        const double* seed, size_t n_seed, double* sensitivity, size_t n_sensitivity) {
+  const Model* m = c;
+  if (n_seed != nk || n_sensitivity != nu) return kError;
+  return model_directional(m->time, m->x, m->u, m->p, unknowns, nu, knowns, nk, seed, sensitivity) ? kOk : kError;
+}
+#endif
 /* The model has no variables but real ones of 64 bits. */
 #define NONE_OF(type, name)                                                                                     \
   EXPORT int fmi3Get##name(void* c, const Ref* references, size_t n, type* values, size_t size) {                   \

@@ -48,8 +48,8 @@ std::vector<std::size_t> numbers_of_pieces(const Jumps& jumps, std::span<const T
   return numbers;
 }
 
-/// Weights of a recording's residuals. While values are wrong a jump is simulated early or late, by many times the noise
-/// and whatever the slopes say: beside a jump samples have no weight.
+/// Weights of a recording's residuals. While values are wrong a jump is simulated early or late, by many times the
+/// noise and whatever the slopes say: beside a jump samples have no weight.
 Eigen::VectorXd weights_beside(const std::vector<std::vector<std::size_t>>& jumps, std::size_t rows) {
   const std::size_t width = jumps.size();
   Eigen::VectorXd weights = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(width * rows));

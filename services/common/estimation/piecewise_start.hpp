@@ -6,8 +6,8 @@
 //   x(t + h) - x(t) = integral over the piece of f(x, u, p)        h: 1/32 of the recording, then 1/4
 //
 // Where the plant jumps by itself h is an eighth of the way from jump to jump at first, then twice as long again and
-// again: a wrong value moves a jump by few samples only as long as few jumps came before it, and the sum of squares has a
-// minimum of its own wherever one of them is at another sample.
+// again: a wrong value moves a jump by few samples only as long as few jumps came before it, and the sum of squares
+// has a minimum of its own wherever one of them is at another sample.
 //
 // Each state of a piece that is not settled is an unknown of its own where it begins, so that recorded states need no
 // smoothing and states that are not recorded follow from those that are. Where the pieces' fit ends, that of the whole

@@ -4,8 +4,8 @@
 //   dw/dk = c d(dx/dt)/dk       for every state, input and parameter k that moves dx/dt, with one c at all points
 //
 // What moves w alone, such as a sensor's own parameter, says nothing. One k alone proves nothing: a velocity moves as
-// the derivative of its way does and is not computed from it. A parameter may change c: a net force is the mass times the
-// derivative, and does not move with the mass.
+// the derivative of its way does and is not computed from it. A parameter may change c: a net force is the mass times
+// the derivative, and does not move with the mass.
 #pragma once
 
 #include <span>

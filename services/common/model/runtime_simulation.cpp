@@ -218,8 +218,8 @@ double beside_jumps(double left, double right) {
   return std::abs(left) < std::abs(right) ? left : right;
 }
 
-/// Whether a channel's jumps are moved over so many samples that both sides of one are hit. Differences of next to nothing
-/// are none.
+/// Whether a channel's jumps are moved over so many samples that both sides of one are hit. Differences of next to
+/// nothing are none.
 bool moves_jumps_too_far(const RowMatrix& left, const RowMatrix& right) {
   constexpr double kNothing = 1e-2, kMost = 0.02;  // of the largest; of the samples
   for (Eigen::Index channel = 0; channel < left.cols(); ++channel) {

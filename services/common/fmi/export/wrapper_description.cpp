@@ -121,8 +121,8 @@ class Rewriter {
       }
   }
 
-  // Which sizes its arrays have is settled by the settings, and with others than the description's their starts are known
-  // to the binary alone.
+  // Which sizes its arrays have is settled by the settings, and with others than the description's their starts are
+  // known to the binary alone.
   void settle_structure() {
     for (std::size_t place = 0; place < variables_.size(); ++place) {
       const Variable& variable = inner_.description().variables[place];

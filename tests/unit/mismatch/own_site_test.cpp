@@ -45,17 +45,23 @@ elements:
 law_sizes: {N: 0.003, m: 0.2, m/s: 50, N s/m: 1.0e-4, N s2/m2: 1.0e-6, N/m: 0.01, s: 1}
 )";
 
-/// k (current / 4 A) (gap / 50 mm)^2 = 12.1 N/A * 0.002 (gap / 10 mm)^2 current where k = 12.1 * 4 * 0.002 * 25 N.
-TEST(OwnSite, AForceThatFallsWithStrokeIsFoundAtTheCoil) {
-  const std::string file = ::testing::TempDir() + "cart_with_a_coil.yaml";
-  std::ofstream(file) << kCart;
+/// What explain says of three rides of a cart, a fourth kept apart. `name`: of the plant.
+Result<mismatch::Explanation> explained(const std::string& name, const CartTruth& truth) {
+  std::string text = kCart;
+  const std::string written = "cart_with_a_coil";
+  text.replace(text.find(written), written.size(), name);
+  const std::string file = ::testing::TempDir() + name + ".yaml";
+  std::ofstream(file) << text;
   const auto plant = load_plant(file);
-  ASSERT_TRUE(plant) << combine(plant.error()).describe();
-  const CartTruth truth{.fades_by = 0.002};
+  if (!plant) return fail(combine(plant.error()));
   const std::vector<Recording> fit = {recorded_cart("first", truth, 1), recorded_cart("second", truth, 2),
                                       recorded_cart("third", truth, 3)};
-  const auto found =
-      mismatch::explain(nominal_asset((*plant)->name), fit, std::vector{recorded_cart("apart", truth, 4)});
+  return mismatch::explain(nominal_asset((*plant)->name), fit, std::vector{recorded_cart("apart", truth, 4)});
+}
+
+/// k (current / 4 A) (gap / 50 mm)^2 = 12.1 N/A * 0.002 (gap / 10 mm)^2 current where k = 12.1 * 4 * 0.002 * 25 N.
+TEST(OwnSite, AForceThatFallsWithStrokeIsFoundAtTheCoil) {
+  const auto found = explained("cart_with_a_coil", {.fades_by = 0.002});
   ASSERT_TRUE(found) << found.error().describe();
   ASSERT_EQ(found->verdict, MismatchVerdict::mismatch) << found->summary;
   ASSERT_EQ(found->effects.size(), 1U) << found->summary;
@@ -69,17 +75,7 @@ TEST(OwnSite, AForceThatFallsWithStrokeIsFoundAtTheCoil) {
 
 /// At the site of the catalogue's kind, in the cart's sizes: 50 mm/s where the catalogue's actuator has 1 mm/s.
 TEST(OwnSite, ADragByTheCubeOfSpeedIsMeasuredBySpeedsOfTheCart) {
-  const std::string file = ::testing::TempDir() + "cart_with_cubic_drag.yaml";
-  std::string text = kCart;
-  text.replace(text.find("cart_with_a_coil"), 16, "cart_with_drag__");
-  std::ofstream(file) << text;
-  const auto plant = load_plant(file);
-  ASSERT_TRUE(plant) << combine(plant.error()).describe();
-  const CartTruth truth{.cubic_drag_N_s3_m3 = 400.0};
-  const std::vector<Recording> fit = {recorded_cart("first", truth, 1), recorded_cart("second", truth, 2),
-                                      recorded_cart("third", truth, 3)};
-  const auto found =
-      mismatch::explain(nominal_asset((*plant)->name), fit, std::vector{recorded_cart("apart", truth, 4)});
+  const auto found = explained("cart_with_cubic_drag", {.cubic_drag_N_s3_m3 = 400.0});
   ASSERT_TRUE(found) << found.error().describe();
   ASSERT_EQ(found->verdict, MismatchVerdict::mismatch) << found->summary;
   ASSERT_EQ(found->effects.size(), 1U) << found->summary;

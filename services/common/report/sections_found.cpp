@@ -3,6 +3,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "sealwatch/model/law_sizes.hpp"
 #include "sealwatch/model/physics.hpp"
 #include "sealwatch/model/plant_description.hpp"
 #include "services/common/report/actuator_drawing.hpp"
@@ -34,19 +35,21 @@ std::string law_line(const std::string& law) {
   return std::string("<p><span class=\"law\">").append(escaped(law)).append("</span></p>\n");
 }
 
-/// What the catalogue says of a law's parameter; "" where it does not know it.
-std::string meaning_of(const mismatch::LawAt& what, const std::string& parameter) {
+/// What the catalogue says of a law's parameter, in the sizes of the plant `model`; "" where it does not know it.
+std::string meaning_of(const mismatch::LawAt& what, const std::string& parameter, const std::string& model) {
+  const Result<const PlantDescription*> plant = find_plant(model);
   for (const Law& law : all_laws())
     if (law.id == what.id && law.form == what.form)
       for (const LawParameter& known : law.parameters)
-        if (known.name == parameter) return std::string(known.meaning);
+        if (known.name == parameter)
+          return plant ? in_sizes_of(**plant, law, known.meaning) : std::string(known.meaning);
   return {};
 }
 
-std::string parameter_table(const FoundEffect& effect) {
+std::string parameter_table(const FoundEffect& effect, const std::string& model) {
   Table table({"parameter", ">value ± standard error", "~meaning"});
   for (const mismatch::FoundParameter& parameter : effect.parameters) {
-    table.row({parameter.name, found_value(parameter), meaning_of(effect.what, parameter.name)});
+    table.row({parameter.name, found_value(parameter), meaning_of(effect.what, parameter.name, model)});
   }
   return table.empty() ? std::string() : table.html();
 }
@@ -102,11 +105,11 @@ std::string effect_in_short(const FoundEffect& effect) {
   return html;
 }
 
-std::string effect_html(const FoundEffect& effect) {
+std::string effect_html(const FoundEffect& effect, const std::string& model) {
   std::string html = std::string("<h3>").append(escaped(title_of(effect))).append("</h3>\n");
   if (!effect.what.meaning.empty()) html += paragraph(effect.what.meaning);
   html += law_line(effect.what.law);
-  html += parameter_table(effect);
+  html += parameter_table(effect, model);
   std::string sure =
       std::string("Probability ").append(text::percent_text(effect.probability)).append(" among the laws tried; ");
   sure.append(text::percent_text(effect.element_probability))
@@ -230,7 +233,7 @@ std::string where_section(const Explanation& explanation) {
 std::string effects_section(const Explanation& explanation) {
   if (explanation.effects.empty()) return {};
   std::string html;
-  for (const FoundEffect& effect : explanation.effects) html += effect_html(effect);
+  for (const FoundEffect& effect : explanation.effects) html += effect_html(effect, explanation.model);
   return folded_section("The laws in full", "parameters, size, where each acts", html);
 }
 

@@ -283,5 +283,14 @@ TEST(LawSizes, AStrengthHasRoomWhereAPlantsFileGivesItsSize) {
   EXPECT_EQ(law_bounds(own, rate).max, rate.max) << "a clock that runs six times as fast is none";
 }
 
+TEST(LawSizes, TextsOfAPowerLawSayThePlantsReferenceSize) {
+  PlantDescription plant;
+  plant.law_sizes = {{"m/s", 50.0}};
+  const Law& law = **find_law("unlisted", {"k_v", "a_v"});
+  EXPECT_EQ(in_sizes_of(plant, law, law.equation), "k_v sgn(v) abs(v / 0.05 m/s)^a_v");
+  EXPECT_EQ(in_sizes_of(plant, law, law.parameters[0].meaning), "force at 0.05 m/s");
+  EXPECT_EQ(in_sizes_of({}, law, law.parameters[0].meaning), "force at 1 mm/s");
+}
+
 }  // namespace
 }  // namespace sealwatch::law_test

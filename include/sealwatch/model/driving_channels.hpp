@@ -16,6 +16,8 @@ struct PlantPart {
   double window_s = 0.0;            ///< as PlantDescription::window_s
   std::string not_recorded = {};    ///< that drives it too: no law is asked for what it may have done. Empty: nothing
   std::string record = {};          ///< what would show that
+  /// It decides most before and after a change of sign of the first input: samples so near to it do not count [s].
+  double unseen_at_reversal_s = 0.0;
 };
 [[nodiscard]] PlantPart simulated_part(const AssetConfig& asset, const TimeSeries& recorded);
 

@@ -2,14 +2,15 @@
 // voltage nor the pressure of chamber B (the source document's own set: flow, differential pressure, position, velocity).
 //
 //   port_1     (V_P/beta) dp_1/dt =  q - q_V1                      the pump delivers what makes the flow past valve 1 q
-//   port_2     (V_P/beta) dp_2/dt = -q + q_C1 - q_V2 + q_C2
+//   port_2     (V_P/beta) dp_2/dt = -q_P - q_V2 + q_C2,   q_P = q + (V_P/beta) dp_1/dt - q_C1     no oil is lost
 //   chamber_a  (V_A/beta) dp_A/dt =  q - A_A v - q_CL
 //   chamber_b, piston             as in model/eha.hpp, with its symbols
 //
-// q: recorded flow [m3/s], between valve 1 and chamber A. Port 1 opens valve 2, through which chamber B returns its oil;
-// what the pump moves before valve 1 opens is not recorded, so that p_B comes some 50 ms late where the piston turns back.
-// A constant p_B is wrong there by the pressure that opens valve 1 (20 bar in the standard test), ever after: by 0.1 mm
-// of x, and 3 to 11 % of R_CL.
+// q: recorded flow [m3/s], between valve 1 and chamber A; q_P: the pump's, from port 2 to 1, and what drives it. Port 1
+// opens valve 2, through which chamber B returns its oil. What the pump moves before valve 1 opens is not recorded, so
+// that p_B comes 50 to 400 ms late where the piston turns back: there the simulation does not count (PlantPart). A
+// constant p_B is wrong by the pressure that opens valve 1 (20 bar in the standard test), ever after: by 0.1 mm of x, and
+// 3 to 11 % of R_CL.
 #pragma once
 
 #include <algorithm>
@@ -60,6 +61,7 @@ struct EhaFlowDriven {
     const auto q_C2 = laws::make_up_flow(p.K_MU, p.p_0, p_2, p.s_MU);
     const auto q_V1 = Eha::valve_flow(p_1, p_A, p_2, p, added[Eha::kDrop1], added[Eha::kCrack1]);
     const auto q_V2 = Eha::valve_flow(p_2, p_B, p_1, p, added[Eha::kDrop2], added[Eha::kCrack2]);
+    const auto q_P = q + (q - q_V1) - q_C1;
     const auto A_A = p.A_C;
     const auto A_B = p.area_ratio * p.A_C;
     const auto V_A = p.V_0 + A_A * x;
@@ -68,7 +70,7 @@ struct EhaFlowDriven {
     const auto force_losses = p.f_C * viscosity * v + load + Eha::cushion_force(x, v, p) + added[Eha::kPistonForce];
     return State<R>{
         R(Eha::stiffness(p.V_P, p.beta, added[Eha::kModulus1]) * (q - q_V1)),
-        R(Eha::stiffness(p.V_P, p.beta, added[Eha::kModulus2]) * (q_C1 - q - q_V2 + q_C2)),
+        R(Eha::stiffness(p.V_P, p.beta, added[Eha::kModulus2]) * (-q_P - q_V2 + q_C2)),
         R(Eha::stiffness(V_A, p.beta, added[Eha::kModulusA], added[Eha::kComplianceA]) *
           (q - A_A * v - q_CL - added[Eha::kOutflowA])),
         R(Eha::stiffness(V_B, p.beta, added[Eha::kModulusB], added[Eha::kComplianceB]) *

@@ -10,6 +10,7 @@
 #include "services/common/dense/row_products.hpp"
 #include "services/common/estimation/channel_noise.hpp"
 #include "services/common/estimation/own_jumps.hpp"
+#include "services/common/estimation/unseen_samples.hpp"
 
 namespace sealwatch {
 namespace {
@@ -206,10 +207,26 @@ Result<PemRecording> make_recording(const AssetConfig& asset, const TimeSeries& 
   if (!own) return fail(own.error());
   recording.own = std::move(*own);
   pass_over_jumps(recorded, recording);
+  leave_out(unseen_samples(asset, recorded), recording);
   return recording;
 }
 
 }  // namespace
+
+void leave_out(const std::vector<Eigen::Index>& samples, PemRecording& recording) {
+  const Eigen::Index channels = recording.noise_std.size(),
+                     rows = static_cast<Eigen::Index>(recording.time_s.size()) * channels;
+  if (samples.empty()) return;
+  if (recording.weight.size() == 0) recording.weight = Eigen::VectorXd::Ones(rows);
+  for (const Eigen::Index sample : samples) recording.weight.segment(sample * channels, channels).setZero();
+}
+
+std::vector<double> weights_of(const PemRecording& recording, Eigen::Index channel) {
+  std::vector<double> weights(recording.time_s.size(), 1.0);
+  for (std::size_t k = 0; recording.weight.size() > 0 && k < weights.size(); ++k)
+    weights[k] = recording.weight(static_cast<Eigen::Index>(k) * recording.noise_std.size() + channel);
+  return weights;
+}
 
 std::string name_in_recording(std::string_view parameter, std::size_t recording) {
   return std::string(parameter) + "@" + std::to_string(recording);

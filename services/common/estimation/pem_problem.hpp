@@ -59,6 +59,11 @@ struct PemRecording {
   std::vector<Unknown> own;     ///< load, slow initial states
 };
 
+/// These samples do not count: their weights are 0 in all channels.
+void leave_out(const std::vector<Eigen::Index>& samples, PemRecording& recording);
+/// Of a channel's residuals, one for each sample.
+[[nodiscard]] std::vector<double> weights_of(const PemRecording& recording, Eigen::Index channel);
+
 struct PemProblem {
   std::vector<Unknown> shared;
   std::vector<PemRecording> recordings;

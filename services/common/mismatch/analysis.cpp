@@ -112,7 +112,9 @@ void Analysis::tell(std::string_view step, double share) const {
 
 std::optional<PlantPart> Analysis::driven_unseen() const {
   PlantPart part = simulated_part(asset_, fit_.samples.front());
-  if (part.not_recorded.empty() || excess(*baseline_) <= kGross) return std::nullopt;
+  // What is left where the samples count is little, and the flow's own errors add up to as much.
+  const bool may_be_all = part.unseen_at_reversal_s > 0.0 || excess(*baseline_) > kGross;
+  if (part.not_recorded.empty() || !may_be_all) return std::nullopt;
   return part;
 }
 

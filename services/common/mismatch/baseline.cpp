@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "sealwatch/model/driving_channels.hpp"
+#include "services/common/estimation/unseen_samples.hpp"
 #include "services/common/mismatch/averaged_inputs.hpp"
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/explain_input.hpp"
@@ -64,6 +65,7 @@ class BaselineFit {
     if (!time_.deadline().passed()) model = with_tolerances(std::move(*model));
     if (!time_.deadline().passed()) model = with_colour_of_residuals(std::move(*model), channels);
     if (!time_.deadline().passed()) model = beyond_usual_ranges(std::move(*model), prepared(fit_), options_.threads);
+    if (std::string note = unseen_in_words(); !note.empty()) baseline_.notes.push_back(std::move(note));
     std::ranges::move(wider_ranges_in_words(model->asset, asset_), std::back_inserter(baseline_.notes));
     if (!windowed() && !time_.deadline().passed()) model = weighed_by_what_is_recorded(std::move(*model));
     baseline_.model = std::make_shared<const FittedModel>(std::move(*model));
@@ -79,6 +81,20 @@ class BaselineFit {
     find_noise(fit_, inputs);
     fit_.of_inputs = holdout_.of_inputs = fit_.colour.front();
     return fit_.of_inputs;
+  }
+
+  // What does not count where the driving input reverses; "": all samples count.
+  [[nodiscard]] std::string unseen_in_words() const {
+    double unseen = 0.0, all = 0.0;
+    for (const TimeSeries& samples : fit_.samples) {
+      unseen += static_cast<double>(unseen_samples(asset_, samples).size());
+      all += static_cast<double>(samples.time_s.size());
+    }
+    if (unseen == 0.0) return {};
+    const PlantPart part = simulated_part(asset_, fit_.samples.front());
+    return "The recordings do not show " + part.not_recorded + ": where the " + in_words(part.inputs.front()) +
+           " reverses, samples do not count (" + number(100.0 * unseen / all, 2) +
+           " %). To see what happens there, record " + part.record + ".";
   }
 
   // Fitted again where its residuals refute the colour of the noise.

@@ -117,14 +117,6 @@ std::vector<KeptDerivatives> derivatives_from(const FittedModel& start, Places p
   return kept;
 }
 
-void leave_out(const std::vector<Eigen::Index>& samples, PemRecording& recording) {
-  const Eigen::Index channels = recording.noise_std.size(),
-                     rows = static_cast<Eigen::Index>(recording.time_s.size()) * channels;
-  if (samples.empty()) return;
-  if (recording.weight.size() == 0) recording.weight = Eigen::VectorXd::Ones(rows);
-  for (const Eigen::Index sample : samples) recording.weight.segment(sample * channels, channels).setZero();
-}
-
 // Of simulations that miss by the root of `excess` times the noise. Errors of a free run add up; one that is held forgets
 // them, and follows the recording's noise.
 double tolerance_at(double excess, double held_within_s) {

@@ -172,7 +172,8 @@ Covariances correlations_of(const ChannelColour& colour) {
   return {1.0, first, second, a1 * second + a2 * first + a3};
 }
 
-// A channel's residuals in all recordings: products of those so many samples apart, over the noise's variance.
+// A channel's residuals in all recordings: products of those so many samples apart, over the noise's variance. Samples
+// that do not count are none of them.
 struct Rest {
   Covariances products{};
   double whitened = 0.0;  // sum of squares
@@ -184,11 +185,17 @@ Rest rest_of(const FittedModel& model, Eigen::Index channel) {
     const PemRecording& recording = model.problem.recordings[k];
     const Linearisation& at = model.optimum.at_optimum[k];
     if (channel >= at.simulated.cols() || !std::isfinite(recording.noise_std(channel))) continue;
-    const Eigen::VectorXd plain =
+    Eigen::VectorXd plain =
         (recording.simulation->recorded().col(channel) - at.simulated.col(channel)) / recording.noise_std(channel);
+    double count = 0.0;
+    for (Eigen::Index row = 0; const double weight : weights_of(recording, channel)) {
+      if (weight == 0.0) plain(row) = 0.0;
+      if (weight > 0.0) ++count;
+      ++row;
+    }
     add_products(plain, rest.products);
     rest.whitened += at.residual(Eigen::seqN(channel, at.simulated.rows(), at.simulated.cols())).squaredNorm();
-    rest.samples += static_cast<double>(plain.size());
+    rest.samples += count;
   }
   return rest;
 }

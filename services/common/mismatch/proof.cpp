@@ -31,24 +31,21 @@ struct ChannelFigures {
   double rms = 0.0, weighed_rms = 0.0, nrmse = 0.0, whiteness = 1.0, independence = 1.0;
 };
 
-// Weights of one channel's residuals.
-std::vector<double> weights_of(const PemRecording& part, Eigen::Index channel) {
-  std::vector<double> weights(part.time_s.size(), 1.0);
-  for (std::size_t k = 0; part.weight.size() > 0 && k < weights.size(); ++k)
-    weights[k] = part.weight(static_cast<Eigen::Index>(k) * part.noise_std.size() + channel);
-  return weights;
-}
-
+// `weights`: of the channel's residuals; those with none (beside a jump, where the drive is not recorded) tell nothing.
 ChannelFigures figures(const std::vector<double>& recorded, const std::vector<double>& simulated, double noise_std,
                        const std::vector<double>& weights, const PastInput& past) {
-  std::vector<double> plain(recorded.size()), residual(recorded.size());
+  std::vector<double> residual(recorded.size()), plain, weighed, measured, predicted;
   for (std::size_t k = 0; k < residual.size(); ++k) {
-    plain[k] = weights[k] == 0.0 ? 0.0 : (recorded[k] - simulated[k]) / noise_std;  // beside a jump it tells nothing
-    residual[k] = weights[k] * plain[k];
+    if (weights[k] == 0.0) continue;
+    plain.push_back((recorded[k] - simulated[k]) / noise_std);
+    weighed.push_back(residual[k] = weights[k] * plain.back());
+    measured.push_back(recorded[k]);
+    predicted.push_back(simulated[k]);
   }
+  if (plain.empty()) return {};
   return {.rms = root_mean_square(plain),
-          .weighed_rms = root_mean_square(residual),
-          .nrmse = nrmse_percent(recorded, simulated),
+          .weighed_rms = root_mean_square(weighed),
+          .nrmse = nrmse_percent(measured, predicted),
           .whiteness = whiteness_p(residual),
           .independence = past.independence_p(residual)};
 }

@@ -40,13 +40,18 @@ TimeSeries with_more_noise(const AssetConfig& asset, TimeSeries samples, const N
   return samples;
 }
 
-// What the window's own start and load make of the difference is no noise: they are fitted.
+// What the window's own start and load make of the difference is no noise: they are fitted. Nor are samples that do not
+// count: they are 0 then.
 void take_off_own(const PemRecording& window, const SimulatedOutputs& own, RowMatrix& difference) {
-  const Eigen::VectorXd scale = window.noise_std.cwiseInverse().replicate(difference.rows(), 1);  // 0: left out
+  Eigen::VectorXd scale = window.noise_std.cwiseInverse().replicate(difference.rows(), 1);  // 0: left out
+  Eigen::Map<Eigen::VectorXd> all(difference.data(), difference.size());
+  if (window.weight.size() > 0) {
+    scale = (window.weight.array() > 0.0).select(scale, 0.0);
+    all = (window.weight.array() > 0.0).select(all, 0.0);
+  }
   const Eigen::VectorXd one_over = (scale.array() > 0.0).select(scale.cwiseInverse(), 0.0);
   Eigen::MatrixXd columns = scale.asDiagonal() * Eigen::MatrixXd(own.sensitivities);
   for (auto column : columns.colwise()) column /= std::max(column.norm(), 1e-300);
-  Eigen::Map<Eigen::VectorXd> all(difference.data(), difference.size());
   const Eigen::VectorXd fitted = columns * columns.colPivHouseholderQr().solve(scale.cwiseProduct(all));
   all -= one_over.cwiseProduct(fitted);
 }
@@ -106,7 +111,7 @@ InputNoise input_noise(const FittedModel& model, const Data& windows, const Nois
     for (Eigen::Index c = 0; c < difference.cols(); ++c) {
       auto& [sum, count] = sums[part.simulation->channels()[static_cast<std::size_t>(c)]];
       add_products(difference.col(c), sum);
-      count += static_cast<double>(difference.rows());
+      count += static_cast<double>((difference.col(c).array() != 0.0).count());
     }
   }
   InputNoise noise;

@@ -13,7 +13,7 @@ struct EhaFlowDrivenModel {
                                                                                        "p_B", "v",   "x"};
   static constexpr std::array<std::string_view, 3> kSlowStates = EhaModel::kSlowStates;
   static constexpr std::array<bool, EhaFlowDriven::kStates> kQuasiSteady = {true, true, false, false, true, false};
-  static constexpr std::array<double, EhaFlowDriven::kStates> kScale = {30.0, 30.0, 30.0, 30.0, 1e-7, 1e-9};
+  static constexpr std::array<double, EhaFlowDriven::kStates> kScale = {300.0, 300.0, 100.0, 100.0, 3e-6, 3e-9};
   static constexpr int kMaximumOrder = 5;
   static constexpr std::array<ModelInput, 1> kInputs = {{{"flow", false}}};
   static constexpr std::array<ModelOutput, 5> kOutputs = {{{"pressure_a", EhaFlowDriven::kPA},

@@ -15,6 +15,9 @@ std::unique_ptr<PlantSimulation> simulate_eha_flow_driven(const PlantDescription
 // noise.
 constexpr double kFlowWindow_s = 2.0;
 
+// The pump turns round, and fills its ports, within some half a second.
+constexpr double kPortsFilled_s = 1.0;
+
 namespace plants {
 
 NativePlant eha() {
@@ -24,7 +27,8 @@ NativePlant eha() {
                                    .simulate = &simulate_eha_circuit},
                                   {.part = {.inputs = {"flow"},
                                             .not_recorded = "what the pump moves before its valve opens",
-                                            .record = "the pressures of both chambers, or the motor's voltage"},
+                                            .record = "the pressures of both chambers, or the motor's voltage",
+                                            .unseen_at_reversal_s = kPortsFilled_s},
                                    .sites = {EhaFlowDriven::kSites.begin(), EhaFlowDriven::kSites.end()},
                                    .simulate = &simulate_eha_flow_driven}};
   return plant;

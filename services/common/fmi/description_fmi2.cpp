@@ -67,6 +67,11 @@ void read_fmi2(const DescriptionReader& reader, const pugi::xml_node& root, Mode
   // A unit for Co-Simulation keeps its states to itself, whatever it tells of them.
   for (const pugi::xml_node& node : structure.child("Derivatives").children("Unknown"))
     if (description.model_exchange) add_states(reader, node, place(node), description);
+  for (const char* list : {"Derivatives", "Outputs"})
+    for (const pugi::xml_node& node : structure.child(list).children("Unknown"))
+      read_dependencies(reader, node, place(node), description, [&](std::uint64_t index) {
+        return index >= 1 && index <= count ? std::optional<std::size_t>(index - 1) : std::nullopt;
+      });
   for (const pugi::xml_node& node : structure.child("InitialUnknowns").children("Unknown"))
     for (const std::uint64_t index : reader.wholes(node, "dependencies"))
       if (index >= 1 && index <= count) description.start_links[place(node)].push_back(index - 1);

@@ -155,6 +155,13 @@ void read_fmi3(const DescriptionReader& reader, const pugi::xml_node& root, Mode
   for (const pugi::xml_node& node : structure.children("ContinuousStateDerivative"))
     if (description.model_exchange)
       add_states(reader, node, place_of(reader, node, "valueReference", places), description);
+  for (const char* list : {"ContinuousStateDerivative", "Output"})
+    for (const pugi::xml_node& node : structure.children(list))
+      read_dependencies(reader, node, place_of(reader, node, "valueReference", places), description,
+                        [&](std::uint64_t reference) {
+                          const auto at = places.find(static_cast<std::uint32_t>(reference));
+                          return at != places.end() ? std::optional(at->second) : std::nullopt;
+                        });
   for (const pugi::xml_node& node : structure.children("InitialUnknown"))
     for (const std::uint64_t reference : reader.wholes(node, "dependencies"))
       if (const auto place = places.find(static_cast<std::uint32_t>(reference)); place != places.end())

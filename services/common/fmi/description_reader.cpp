@@ -205,4 +205,17 @@ void add_states(const DescriptionReader& reader, const pugi::xml_node& at, std::
   }
 }
 
+void read_dependencies(const DescriptionReader& reader, const pugi::xml_node& node, std::size_t unknown,
+                       ModelDescription& description,
+                       const std::function<std::optional<std::size_t>(std::uint64_t)>& variable_of) {
+  if (!node.attribute("dependencies")) return;
+  std::vector<std::size_t> variables;
+  for (const std::uint64_t number : reader.wholes(node, "dependencies")) {
+    const auto variable = variable_of(number);
+    if (!variable) return;
+    variables.push_back(*variable);
+  }
+  description.dependencies[unknown] = std::move(variables);
+}
+
 }  // namespace sealwatch::fmi

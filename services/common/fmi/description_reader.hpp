@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <pugixml.hpp>
 
 #include "services/common/fmi/model_description.hpp"
@@ -72,5 +73,10 @@ void read_number_attributes(const DescriptionReader& reader, const pugi::xml_nod
 /// Adds every element of the derivative and of the state that belongs to it.
 void add_states(const DescriptionReader& reader, const pugi::xml_node& at, std::size_t derivative,
                 ModelDescription& description);
+/// Takes what one of the unknowns declares; `variable_of` gives the variable that a number stands for. Where
+/// it gives none nothing is known.
+void read_dependencies(const DescriptionReader& reader, const pugi::xml_node& node, std::size_t unknown,
+                       ModelDescription& description,
+                       const std::function<std::optional<std::size_t>(std::uint64_t)>& variable_of);
 
 }  // namespace sealwatch::fmi

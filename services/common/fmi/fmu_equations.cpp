@@ -152,6 +152,7 @@ Status check_derivatives(FmuBlock& block) {
   if (block.setup.co_simulation != 0 || block.setup.state_directional == 0) return {};
   Setup differences = block.setup;
   differences.state_directional = differences.output_directional = 0;
+  differences.dependencies.clear();
   auto honest = FmuProcess::start(block.file->name(), differences, 1);
   if (!honest) return fail(honest.error());
   DerivativeCheck check(block);

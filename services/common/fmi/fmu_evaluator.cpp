@@ -5,15 +5,19 @@
 namespace sealwatch::fmi {
 namespace {
 
-/// result += a b, with the rows of a from `first`.
+/// result += a b, with the rows of a from `first`. Most of a is zero: what a unit gives goes to one row or none.
 void add_product(const RuntimeMatrix& a, std::size_t first, const RuntimeMatrix& b, RuntimeMatrix& result) {
-  for (std::size_t row = 0; row < result.rows; ++row)
+  const std::size_t columns = result.columns;
+  for (std::size_t row = 0; row < result.rows; ++row) {
+    const double* factors = a.row(first + row);
+    double* sums = result.row(row);
     for (std::size_t k = 0; k < b.rows; ++k) {
-      const double factor = a.row(first + row)[k];
+      const double factor = factors[k];
       if (factor == 0.0) continue;
-      for (std::size_t column = 0; column < result.columns; ++column)
-        result.row(row)[column] += factor * b.row(k)[column];
+      const double* terms = b.row(k);
+      for (std::size_t column = 0; column < columns; ++column) sums[column] += factor * terms[column];
     }
+  }
 }
 
 /// Rows [first, first + rows) and columns from `skip` of a matrix.

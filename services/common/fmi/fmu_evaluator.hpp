@@ -70,6 +70,11 @@ class RunningBlock {
   /// Whether the derivatives that the unit gave at the point asked last are those of its values: looked at ever less
   /// often, so that no fifth of a run is passed over; false three times in a row: trouble.
   [[nodiscard]] bool derivatives_hold(double time_s, const EvaluationRequest& asked);
+  /// Whether states that were moved together, by what ModelStructure declares, do what the unit does at the point asked
+  /// last.
+  [[nodiscard]] bool groups_hold(double time_s);
+  /// Again at the point asked last.
+  [[nodiscard]] bool differentiate_one_by_one(double time_s, EvaluationRequest asked);
   [[nodiscard]] BesidePoint beside_inputs() const;
   /// dz by a step from the last point asked, over its share of a size; nothing where the unit has no value there.
   [[nodiscard]] std::optional<std::vector<double>> slope_along(double time_s, const BesidePoint& beside,
@@ -90,7 +95,7 @@ class RunningBlock {
   std::shared_ptr<ProcessPool> pool_;
   const Deadline* deadline_;
   std::vector<std::unique_ptr<FmuProcess>> processes_;  ///< several where the binary allows one instance in each
-  std::vector<double> steps_;
+  std::vector<double> steps_, state_factors_;
   Beginning beginning_;
   std::vector<double> states_, inputs_, known_states_, known_inputs_;  ///< in the FMU's units
   std::vector<bool> signs_;

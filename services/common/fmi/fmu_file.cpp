@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "services/common/fmi/declared_dependencies.hpp"
 #include "services/common/fmi/setting_values.hpp"
 #include "services/common/text/words.hpp"
 
@@ -226,6 +227,8 @@ Result<Setup> FmuFile::setup(Selection& selection) const {
       .inputs = handles_of(description_, selection.inputs),
       .outputs = handles_of(description_, selection.outputs),
       .continuous_inputs = continuous,
+      .dependencies =
+          co_simulation() ? std::vector<std::uint32_t>() : declared_dependencies(description_, selection.outputs),
       .needed_tool = {}};
   if (interface().needs_execution_tool)
     setup.needed_tool = description_.tool.empty() ? "the tool that made it" : description_.tool;

@@ -33,6 +33,9 @@ FmuHost::FmuHost(Setup setup)
       indicators_(setup_.event_indicators),
       state_references_(references(setup_.states)),
       derivative_references_(references(setup_.derivatives)),
+      state_groups_(column_groups(setup_.dependencies, states_)),
+      single_states_(single_columns(states_)),
+      single_inputs_(single_columns(continuous_inputs_.size)),
       library_(setup_.library),
       make_(setup_.fmi3 != 0 ? fmi3_instances(library_, setup_) : fmi2_instances(library_, setup_)) {}
 
@@ -107,6 +110,7 @@ void FmuHost::evaluate(Unpacker request, Packer answer) {
     const std::span<double> derivative_part = answer.room(states_ * columns);
     differentiate(known, time, derivative_part, answer.room(outputs_.size * columns));
   };
+  grouped_ = wanted.by_state != kOneByOne;
   if (wanted.by_state != 0) part(Known::states, states_);
   if (wanted.by_input != 0) part(Known::inputs, continuous_inputs_.size);
   for (std::size_t slot = 1; wanted.by_parameter != 0 && slot < slots_.size(); ++slot) {
@@ -120,33 +124,43 @@ void FmuHost::evaluate(Unpacker request, Packer answer) {
 // refuses, differences take their place from then on.
 void FmuHost::differentiate(Known known, double time, std::span<double> by_derivative, std::span<double> by_output) {
   const auto given = [&](std::uint32_t& directional, const std::vector<Reference>& unknowns, std::size_t rows,
-                         std::span<double> part) {
+                         std::size_t first, std::span<double> part) {
     if (directional == 0) return false;
     try {
-      by_directions(known, unknowns, rows, part);
+      by_directions(known, unknowns, rows, first, part);
     } catch (const Failure&) {
       directional = 0;
     }
     return directional != 0;
   };
-  const bool derivatives = given(setup_.state_directional, derivative_references_, states_, by_derivative);
-  const bool outputs = given(setup_.output_directional, outputs_.references, outputs_.size, by_output);
+  const bool derivatives = given(setup_.state_directional, derivative_references_, states_, 0, by_derivative);
+  const bool outputs = given(setup_.output_directional, outputs_.references, outputs_.size, states_, by_output);
   if (!derivatives || (!outputs && outputs_.size > 0))
     by_differences(known, time, derivatives ? std::span<double>() : by_derivative,
                    outputs ? std::span<double>() : by_output);
 }
 
-void FmuHost::by_directions(Known known, const std::vector<Reference>& unknowns, std::size_t rows,
+const std::vector<ColumnGroup>& FmuHost::groups_of(Known known) const {
+  if (known == Known::inputs) return single_inputs_;
+  return grouped_ ? state_groups_ : single_states_;
+}
+
+// `first`: the first of these rows among those of all derivatives and outputs.
+void FmuHost::by_directions(Known known, const std::vector<Reference>& unknowns, std::size_t rows, std::size_t first,
                             std::span<double> part) {
   const std::vector<Reference>& knowns = known == Known::states ? state_references_ : continuous_inputs_.references;
   const std::size_t columns = known == Known::states ? states_ : continuous_inputs_.size;
   seed_.assign(columns, 0.0);
   column_.assign(rows, 0.0);
-  for (std::size_t column = 0; rows > 0 && column < columns; ++column) {
-    seed_[column] = 1.0;
+  std::ranges::fill(part, 0.0);
+  if (rows == 0) return;
+  for (const ColumnGroup& group : groups_of(known)) {
+    for (const std::uint32_t column : group.columns) seed_[column] = 1.0;
     slots_[0]->directional(unknowns, knowns, seed_, column_);
-    seed_[column] = 0.0;
-    for (std::size_t row = 0; row < rows; ++row) part[row * columns + column] = column_[row];
+    for (const std::uint32_t column : group.columns) seed_[column] = 0.0;
+    visit_places(group, first + rows, [&](std::size_t row, std::size_t column) {
+      if (row >= first && row < first + rows) part[(row - first) * columns + column] = column_[row - first];
+    });
   }
 }
 
@@ -162,22 +176,27 @@ void FmuHost::by_differences(Known known, double time, std::span<double> derivat
     place(model, time, state_, input_);
     read(model, std::span(values).first(states_), std::span(values).subspan(states_));
   };
-  for (std::size_t column = 0; column < columns; ++column) {
-    const double here = point[column];
+  std::ranges::fill(derivative_part, 0.0);
+  std::ranges::fill(output_part, 0.0);
+  here_ = point;
+  width_.assign(columns, 0.0);
+  for (const ColumnGroup& group : groups_of(known)) {
     constexpr double kLeast = 1e-7;  // of the value, so that rounding does not show
-    const double step = std::max(steps[column], kLeast * std::abs(here));
-    point[column] = here + step;
-    const double above = point[column];
+    const auto step = [&](std::uint32_t column) { return std::max(steps[column], kLeast * std::abs(here_[column])); };
+    for (const std::uint32_t column : group.columns) point[column] = here_[column] + step(column);
     read_all(upper_);
-    point[column] = here - step;
-    const double width = above - point[column];
+    for (const std::uint32_t column : group.columns) {
+      const double above = point[column];
+      point[column] = here_[column] - step(column);
+      width_[column] = above - point[column];
+    }
     read_all(lower_);
-    point[column] = here;
-    const auto difference = [&](std::size_t row) { return (upper_[row] - lower_[row]) / width; };
-    for (std::size_t row = 0; row < states_ && !derivative_part.empty(); ++row)
-      derivative_part[row * columns + column] = difference(row);
-    for (std::size_t row = 0; row < outputs_.size && !output_part.empty(); ++row)
-      output_part[row * columns + column] = difference(states_ + row);
+    for (const std::uint32_t column : group.columns) point[column] = here_[column];
+    visit_places(group, states_ + outputs_.size, [&](std::size_t row, std::size_t column) {
+      const std::span<double> part = row < states_ ? derivative_part : output_part;
+      const std::size_t at = row < states_ ? row : row - states_;
+      if (!part.empty()) part[at * columns + column] = (upper_[row] - lower_[row]) / width_[column];
+    });
   }
   place(model, time, state_, input_);
 }

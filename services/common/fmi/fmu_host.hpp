@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "services/common/fmi/column_groups.hpp"
 #include "services/common/fmi/fmi_instance.hpp"
 
 namespace sealwatch::fmi {
@@ -30,17 +31,21 @@ class FmuHost {
   enum class Known { states, inputs };
   void differentiate(Known known, double time, std::span<double> by_derivative, std::span<double> by_output);
   void by_differences(Known known, double time, std::span<double> derivative_part, std::span<double> output_part);
-  void by_directions(Known known, const std::vector<Reference>& unknowns, std::size_t rows, std::span<double> part);
+  void by_directions(Known known, const std::vector<Reference>& unknowns, std::size_t rows, std::size_t first,
+                     std::span<double> part);
+  [[nodiscard]] const std::vector<ColumnGroup>& groups_of(Known known) const;
 
   Setup setup_;
   std::vector<Constant> constants_;
   Group parameters_, inputs_, outputs_, continuous_inputs_;
   std::size_t states_, indicators_;
   std::vector<Reference> state_references_, derivative_references_;
+  std::vector<ColumnGroup> state_groups_, single_states_, single_inputs_;
+  bool grouped_ = true;
   Library library_;
   MakeInstance make_;
   std::vector<std::unique_ptr<FmiInstance>> slots_;
-  std::vector<double> state_steps_, input_steps_, state_, input_, upper_, lower_, seed_, column_;
+  std::vector<double> state_steps_, input_steps_, state_, input_, upper_, lower_, seed_, column_, here_, width_;
 };
 
 }  // namespace sealwatch::fmi

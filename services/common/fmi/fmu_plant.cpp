@@ -11,6 +11,7 @@
 #include "sealwatch/core/text.hpp"
 #include "services/common/equations/dimension.hpp"
 #include "services/common/equations/plant_names.hpp"
+#include "services/common/fmi/declared_dependencies.hpp"
 #include "services/common/fmi/derived_outputs.hpp"
 #include "services/common/fmi/fmu_equations.hpp"
 #include "services/common/text/numbers.hpp"
@@ -50,6 +51,9 @@ class Builder {
       complain(of == keys_.end() ? key : of->second, error);
     });
     if (!built || !sound_) return std::nullopt;
+    const auto undeclared = check_dependencies(block_);
+    if (!undeclared) return complain("fmu.file", undeclared.error()), std::nullopt;
+    if (!undeclared->empty()) built->remarks.push_back(*undeclared);
     if (const Status honest = check_derivatives(block_); !honest)
       return complain("fmu.file", honest.error()), std::nullopt;
     note_what_laws_do_not_reach(built->remarks);

@@ -14,7 +14,7 @@ std::size_t heap_bytes(const Setup& setup, std::size_t most_slots) {
                     numbers = rows * (1 + states + inputs + most_slots) + setup.event_indicators +
                               4 * (states + inputs) + most_slots * (inputs + elements(setup.parameters));
   std::size_t texts = setup.library.size() + setup.folder.size() + setup.resources.size() + setup.token.size() +
-                      setup.constant_texts.size();
+                      setup.constant_texts.size() + setup.dependencies.size() * sizeof(std::uint32_t);
   for (const auto* handles :
        {&setup.states, &setup.derivatives, &setup.parameters, &setup.constants, &setup.inputs, &setup.outputs})
     texts += handles->size() * sizeof(Handle);

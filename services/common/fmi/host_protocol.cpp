@@ -28,21 +28,28 @@ void visit(Visitor&& visitor, SetupType& setup) {
   visitor.texts(setup.library, setup.folder, setup.resources, setup.token, setup.constant_texts);
   visitor.numbers(setup.fmi3, setup.co_simulation, setup.once_per_process, setup.state_directional,
                   setup.output_directional, setup.event_indicators, setup.continuous_inputs, setup.structural);
-  visitor.lists(setup.states, setup.derivatives, setup.parameters, setup.constants, setup.inputs, setup.outputs);
+  visitor.lists(setup.states, setup.derivatives, setup.parameters, setup.constants, setup.inputs, setup.outputs,
+                setup.dependencies);
 }
 
 struct Putter {
   Packer& packer;
   void texts(auto&... text) { (packer.put_text(text), ...); }
   void numbers(auto&... number) { (packer.put(number), ...); }
-  void lists(auto&... list) { (packer.put_list(std::span<const Handle>(list)), ...); }
+  template <class... Items>
+  void lists(const std::vector<Items>&... list) {
+    (packer.put_list(std::span<const Items>(list)), ...);
+  }
 };
 
 struct Getter {
   Unpacker& unpacker;
   void texts(auto&... text) { ((text = unpacker.text()), ...); }
   void numbers(auto&... number) { ((number = unpacker.get<std::uint32_t>()), ...); }
-  void lists(auto&... list) { ((list = unpacker.list<Handle>()), ...); }
+  template <class... Items>
+  void lists(std::vector<Items>&... list) {
+    ((list = unpacker.list<Items>()), ...);
+  }
 };
 
 }  // namespace

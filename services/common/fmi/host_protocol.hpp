@@ -81,8 +81,14 @@ struct Setup {
   std::string constant_texts;               ///< the value of each, ended by a zero byte
   std::vector<Handle> inputs, outputs;
   std::uint32_t continuous_inputs = 0;  ///< how many of the inputs, the first, may change outside of events
-  std::string needed_tool;              ///< that must be on this machine for the binary to start; not of its business
+  /// Of each state derivative and output, element by element: how many states it depends on, and which. Empty: each may
+  /// depend on all.
+  std::vector<std::uint32_t> dependencies;
+  std::string needed_tool;  ///< that must be on this machine for the binary to start; not of its business
 };
+
+/// Derivatives by state, column by column, whatever Setup::dependencies says.
+inline constexpr std::uint32_t kOneByOne = 2;
 
 /// Which numbers an evaluation answers with, in this order; f, y, z always.
 struct EvaluationRequest {

@@ -122,6 +122,10 @@ struct ModelDescription {
   /// States and the variables of which their starts depend, by the description (InitialUnknowns); indices of variables.
   std::map<std::size_t, std::vector<std::size_t>> start_links;
 
+  /// Derivatives and outputs, and the variables on which they depend between events; those that do not say it are
+  /// missing. Indices of variables.
+  std::map<std::size_t, std::vector<std::size_t>> dependencies;
+
   [[nodiscard]] const Variable* find(std::string_view variable) const;
   [[nodiscard]] const Unit* find_unit(std::string_view unit) const;
   /// The SI unit of what the variable counts in; nothing where the description does not say.

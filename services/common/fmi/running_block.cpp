@@ -63,6 +63,7 @@ Result<std::unique_ptr<RunningBlock>> RunningBlock::begin(const FmuBlock& block,
   if (running->beginning_.outcome.terminate) running->end_at(first.time_s);
   running->inputs_ = block.input_start;
   running->states_.resize(block.states.size());
+  for (const Conversion& state : block.states) running->state_factors_.push_back(state.factor);
   return running;
 }
 
@@ -297,15 +298,19 @@ void RunningBlock::convert_jacobian(std::span<const double> derivatives, std::sp
   const std::size_t known = of_states ? states : block_.inputs.size();
   RuntimeMatrix& matrix = of_states ? values_.by_state : values_.by_input;
   matrix.resize(states + variables, known);
-  for (std::size_t column = 0; column < known; ++column) {
-    const std::size_t place = of_states ? column : block_.inputs[column].place;
-    if (place >= columns) continue;  // changes at events only
-    const double scale = of_states ? block_.states[column].factor : block_.inputs[column].unit.factor;
-    for (std::size_t k = 0; k < states; ++k) matrix.row(k)[column] = rate(k, derivatives[k * columns + place]) / scale;
-    for (std::size_t k = 0; k < variables; ++k) {
-      const auto& [row, unit] = block_.variables[k];
-      matrix.row(states + k)[column] = unit.factor * outputs[row * columns + place] / scale;
+  const auto convert_row = [&](const double* from, double factor, double* to) {
+    for (std::size_t column = 0; of_states && column < known; ++column)
+      to[column] = factor * from[column] / state_factors_[column];
+    for (std::size_t column = 0; !of_states && column < known; ++column) {
+      const auto& [place, unit] = block_.inputs[column];
+      if (place < columns) to[column] = factor * from[place] / unit.factor;  // else it changes at events only
     }
+  };
+  for (std::size_t k = 0; k < states; ++k)
+    convert_row(derivatives.data() + k * columns, block_.states[k].factor, matrix.row(k));
+  for (std::size_t k = 0; k < variables; ++k) {
+    const auto& [row, unit] = block_.variables[k];
+    convert_row(outputs.data() + row * columns, unit.factor, matrix.row(states + k));
   }
 }
 

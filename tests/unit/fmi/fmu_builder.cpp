@@ -101,6 +101,42 @@ TestUnit spring_return(const std::string& binary) {
   return unit;
 }
 
+TestUnit rod(const std::string& binary, bool declared) {
+  constexpr int kCells = 12, kInput = 2 * kCells + 1, kOutput = kInput + 3;  // variables are counted from 1
+  TestUnit unit{.binary = binary,
+                .token = "{sealwatch-test-rod}",
+                .directional = binary == "fmu_rod_partials2",
+                .variables = {},
+                .structure = {},
+                .interfaces = {},
+                .version = {}};
+  const auto unknown = [&](int index, const std::string& dependencies) {
+    std::string text = "<Unknown index=\"";
+    text += std::to_string(index) + "\"";
+    if (declared) text += " dependencies=\"" + dependencies + "\"";
+    return text + "/>";
+  };
+  const std::string parameter = "causality=\"parameter\" variability=\"fixed\"";
+  const auto cell = [](int k) { return std::string("T").append(std::to_string(k + 1)); };
+  for (int k = 0; k < kCells; ++k) unit.variables += real2(cell(k), 1000 + k, "", "");
+  for (int k = 0; k < kCells; ++k)
+    unit.variables += real2(std::string("der(").append(cell(k)).append(")"), 2000 + k, "",
+                            "derivative=\"" + std::to_string(k + 1) + "\"");
+  unit.variables += real2("P", 3000, "causality=\"input\"", "start=\"0\"") +
+                    real2("C", 4000, parameter, "start=\"1\"") + real2("G", 4001, parameter, "start=\"50\"") +
+                    real2("first", 5000, "causality=\"output\"", "") +
+                    real2("calls", 5001, "causality=\"output\" variability=\"discrete\"", "");
+  unit.structure = "<Outputs>" + unknown(kOutput, "1") + unknown(kOutput + 1, "") + "</Outputs><Derivatives>";
+  for (int k = 0; k < kCells; ++k) {
+    std::string neighbours = std::to_string(k + 1);
+    if (k > 0) neighbours.append(" ").append(std::to_string(k));
+    if (k + 1 < kCells) neighbours.append(" ").append(std::to_string(k + 2));
+    unit.structure += unknown(kCells + k + 1, k == 0 ? neighbours + " " + std::to_string(kInput) : neighbours);
+  }
+  unit.structure += "</Derivatives>\n";
+  return unit;
+}
+
 TestUnit emps() {
   TestUnit unit{.binary = "fmu_emps2",
                 .token = "{sealwatch-test-emps}",

@@ -35,6 +35,8 @@ struct TestUnit {
 [[nodiscard]] std::string description_of(const TestUnit& unit);
 [[nodiscard]] TestUnit spring_return(const std::string& binary);
 [[nodiscard]] TestUnit emps();
+/// Twelve cells in a row; `declared`: its structure says that each feels its neighbours alone.
+[[nodiscard]] TestUnit rod(const std::string& binary, bool declared);
 /// For Co-Simulation.
 [[nodiscard]] TestUnit gain();
 [[nodiscard]] TestUnit bouncing(const std::string& binary);

@@ -15,7 +15,7 @@ std::string capitalised(std::string text) {
   return text;
 }
 
-/// "Seal condition is 76.0 % (limit 60.0 %); its end of life is expected on 2018-05-02, with 80 % between ... and ...".
+/// "Seal condition is 76.0 % (limit 60.0 %); its end of life is expected on 2018-05-02 (80 %: ... to ...)".
 std::string outlook(const Evidence& evidence, const std::string& part) {
   const RemainingLife& life = evidence.life;
   std::string text;
@@ -31,8 +31,8 @@ std::string outlook(const Evidence& evidence, const std::string& part) {
   switch (forecast.state) {
     case ForecastState::ok:
       return join + "its end of life is expected on " + format_date({forecast.end_of_life_ns}) +
-             ", with 80 % between " + format_date(add_months(now, forecast.rul_p10_months)) + " and " +
-             format_date(add_months(now, forecast.rul_p90_months)) + ".";
+             " (80 %: " + format_date(add_months(now, forecast.rul_p10_months)) + " to " +
+             format_date(add_months(now, forecast.rul_p90_months)) + ").";
     case ForecastState::past_threshold:
       // The condition of the last test that counts may still have been above: the forecast goes on to this test's date.
       return text + (life.condition_known && life.condition > life.threshold
@@ -195,7 +195,7 @@ std::vector<std::string> reasons_of_dates(const Recommendation& recommendation, 
                       text::in_months(booking_lead_time_months(site)) + " before the work by " + format_date(work) +
                       ", the booking lead time of a vessel");
   if (work == in_force.replace_by && verdict.replace_by && *verdict.replace_by != work)
-    reasons.push_back("work by " + format_date(work) + " is held although this test by itself says " +
+    reasons.push_back("work by " + format_date(work) + " is held, although this test alone says " +
                       format_date(*verdict.replace_by) + ": the date moves earlier when " +
                       std::to_string(options.confirming_tests) + " of " + std::to_string(options.confirming_window) +
                       " tests ask for it, later when " + std::to_string(options.easing_tests) +

@@ -25,7 +25,7 @@ struct Recommendation {
 [[nodiscard]] Recommendation recommend(const Evidence& evidence, const Assessment& assessment, const InForce& in_force,
                                        const SiteConfig* site, const std::string& part = kPistonSeal);
 
-/// Why the dates are what they are: the time to book a vessel; that the date in force is held where this test by itself
+/// Why the dates are what they are: the time to book a vessel; that the date in force is held where this test alone
 /// names another. Nothing where the recommendation names no date.
 [[nodiscard]] std::vector<std::string> reasons_of_dates(const Recommendation& recommendation,
                                                         const TestVerdict& verdict, const InForce& in_force,

@@ -10,13 +10,15 @@ namespace sealwatch::advisory_generation {
 namespace {
 
 constexpr std::string_view kStart = "this test alone says: ";
-constexpr std::string_view kMiddle = ". The advice goes by all tests so far, which say";
+constexpr std::string_view kMiddle = ". The advice rests on all tests so far; together they say";
 constexpr std::string_view kTheSame = " the same";
 constexpr std::string_view kOther = ": ";
 constexpr std::string_view kSeparator = "; ";
 /// As versions up to 0.1.0 wrote it: their journals are read too.
 constexpr std::string_view kOldStart = "what this test by itself says: ";
 constexpr std::string_view kOldMiddle = "; what is in force after all tests so far: ";
+/// As 0.1.0 wrote it, with kStart, kSeparator, kTheSame and kOther.
+constexpr std::string_view kMiddleBefore = ". The advice goes by all tests so far, which say";
 constexpr std::string_view kOldSeparator = ", ";
 constexpr std::string_view kOldNone = "no work";
 constexpr std::string_view kOldNoDate = "no date yet";
@@ -102,7 +104,8 @@ std::string words(const std::string& wear, const T& of, bool failed) {
   return text.append(kSeparator).append(failed ? "stroke failed" : "stroke done");
 }
 
-constexpr std::string_view kEarlier = " (were the work one campaign earlier: ";
+constexpr std::string_view kEarlier = " (with the work one campaign earlier: ";
+constexpr std::string_view kOldEarlier = " (were the work one campaign earlier: ";  ///< up to 0.1.0
 constexpr std::string_view kEarlierEnd = ")";
 
 std::optional<WearLevel> level_of(std::string_view text) {
@@ -123,10 +126,12 @@ struct Words {
 /// What words() wrote, from its end: "WEAR; DATE; INSTRUMENTS; STROKE", the date only where there is one.
 std::optional<Words> read(std::string text, std::string_view separator) {
   Words read;
-  if (const std::size_t begin = text.find(kEarlier); begin != std::string::npos) {
+  for (const std::string_view earlier : {kEarlier, kOldEarlier}) {
+    const std::size_t begin = text.find(earlier);
+    if (begin == std::string::npos) continue;
     const std::size_t end = text.find(kEarlierEnd, begin);
     if (end == std::string::npos) return std::nullopt;
-    read.wear_a_campaign_earlier = level_of(text.substr(begin + kEarlier.size(), end - begin - kEarlier.size()));
+    read.wear_a_campaign_earlier = level_of(text.substr(begin + earlier.size(), end - begin - earlier.size()));
     text.erase(begin, end + kEarlierEnd.size() - begin);
   }
   const auto last = [&] {
@@ -238,10 +243,13 @@ std::optional<VerdictRecord> from_words(const std::string& line) {
   const bool old = line.starts_with(kOldStart);
   const std::string_view start = old ? kOldStart : kStart;
   const std::string_view separator = old ? kOldSeparator : kSeparator;
-  const auto middle = line.find(old ? kOldMiddle : kMiddle);
+  const std::string_view between = old                                             ? kOldMiddle
+                                   : line.find(kMiddleBefore) != std::string::npos ? kMiddleBefore
+                                                                                   : kMiddle;
+  const auto middle = line.find(between);
   if (!line.starts_with(start) || middle == std::string::npos) return std::nullopt;
   const std::string alone = line.substr(start.size(), middle - start.size());
-  std::string all = line.substr(middle + (old ? kOldMiddle : kMiddle).size());
+  std::string all = line.substr(middle + between.size());
   if (!old && all == kTheSame)
     all = alone;
   else if (!old)

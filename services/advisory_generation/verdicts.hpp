@@ -67,9 +67,9 @@ class VerdictMemory {
 };
 
 /// Both in one line that stands as the last reason of every advisory, for people and for restore():
-/// "this test alone says: no work yet (were the work one campaign earlier: plan the work); replacement by
-/// 2017-06-01; instruments doubted: flow, position; stroke done. The advice goes by all tests so far, which say: ...",
-/// or "... which say the same".
+/// "this test alone says: no work yet (with the work one campaign earlier: plan the work); replacement by
+/// 2017-06-01; instruments doubted: flow, position; stroke done. The advice rests on all tests so far; together they
+/// say: ...", or "... together they say the same".
 [[nodiscard]] std::string in_words(const TestVerdict& verdict, const InForce& in_force);
 struct VerdictRecord {
   TestVerdict verdict;

@@ -147,7 +147,7 @@ TEST(DecisionTable, SaysWhatBookByWhenAndWhy) {
   EXPECT_THAT(
       r.text,
       HasSubstr("Book a vessel by 2012-05-31 to replace the piston seal in campaign summer 2013 (2013-06-01)."));
-  EXPECT_THAT(r.text, HasSubstr("expected on 2013-12-31, with 80 % between 2013-07-28 and 2014-06-06"));
+  EXPECT_THAT(r.text, HasSubstr("expected on 2013-12-31 (80 %: 2013-07-28 to 2014-06-06)"));
 }
 
 TEST(DecisionTable, CampaignKeepsTheFailureProbabilityDown) {
@@ -238,7 +238,7 @@ TEST(DecisionTable, DatesSayWhereTheyComeFrom) {
   const UtcTime later = start_of_day(add_months(*r.work_before, 24.0));
   const auto held = reasons_of_dates(r, {.replace_by = later}, in_force, &site, {});
   ASSERT_EQ(held.size(), 2u);
-  EXPECT_THAT(held[1], HasSubstr("is held although this test by itself says " + format_date(later)));
+  EXPECT_THAT(held[1], HasSubstr("is held, although this test alone says " + format_date(later)));
   EXPECT_TRUE(reasons_of_dates(confirmed({.rul_months = 90}), same, in_force, &site, {}).empty()) << "no work, no date";
 }
 

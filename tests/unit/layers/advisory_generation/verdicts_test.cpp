@@ -138,7 +138,7 @@ TEST(VerdictWords, RoundTripOfWhatWouldHoldACampaignEarlier) {
   EXPECT_EQ(record->in_force, InForce{.wear = WearLevel::plan});
   const InForce as_the_test{.wear = WearLevel::none, .replace_by = verdict.replace_by};
   const std::string same = in_words(verdict, as_the_test);
-  EXPECT_TRUE(same.ends_with("which say the same")) << same;
+  EXPECT_TRUE(same.ends_with("together they say the same")) << same;
   ASSERT_TRUE(from_words(same));
   EXPECT_EQ(from_words(same)->in_force, as_the_test);
   EXPECT_EQ(from_words(same)->verdict, verdict);
@@ -159,12 +159,12 @@ TEST(VerdictWords, AreThoseOfTheOperator) {
   const TestVerdict verdict{.wear = WearLevel::book_at_once, .replace_by = day("2017-06-01")};
   EXPECT_EQ(in_words(verdict, {.wear = WearLevel::book, .replace_by = day("2019-06-01")}),
             "this test alone says: book a vessel at once; replacement by 2017-06-01; instruments trusted; stroke done. "
-            "The advice goes by all tests so far, which say: book a vessel; replacement by 2019-06-01; instruments "
-            "trusted; stroke done");
+            "The advice rests on all tests so far; together they say: book a vessel; replacement by 2019-06-01; "
+            "instruments trusted; stroke done");
   EXPECT_EQ(
       in_words({.wear = WearLevel::none}, {}),
-      "this test alone says: no work yet; instruments trusted; stroke done. The advice goes by all tests so far, which "
-      "say the same");
+      "this test alone says: no work yet; instruments trusted; stroke done. The advice rests on all tests so far; "
+      "together they say the same");
 }
 
 TEST(VerdictWords, OfOlderJournalsAreReadToo) {
@@ -185,15 +185,21 @@ TEST(VerdictWords, OfOlderJournalsAreReadToo) {
       "advice goes by all tests so far, which say the same");
   ASSERT_TRUE(later);
   EXPECT_EQ(later->in_force, (InForce{.wear = WearLevel::plan, .replace_by = day("2017-06-01")}));
+  const auto released = from_words(
+      "this test alone says: no work yet (were the work one campaign earlier: plan the work); instruments trusted; "
+      "stroke done. The advice goes by all tests so far, which say: plan the work; instruments trusted; stroke failed");
+  ASSERT_TRUE(released);
+  EXPECT_EQ(released->verdict.wear_a_campaign_earlier, WearLevel::plan);
+  EXPECT_EQ(released->in_force, (InForce{.wear = WearLevel::plan, .failing = true}));
 }
 
 TEST(VerdictWords, OtherReasonsAreNoRecord) {
   EXPECT_FALSE(from_words(""));
   EXPECT_FALSE(from_words("health grade 0.7"));
   EXPECT_FALSE(from_words("what this test by itself says: ; what is in force after all tests so far: "));
-  EXPECT_FALSE(from_words("this test alone says: . The advice goes by all tests so far, which say"));
-  EXPECT_FALSE(
-      from_words("this test alone says: no work yet. The advice goes by all tests so far, which say the same"));
+  EXPECT_FALSE(from_words("this test alone says: . The advice rests on all tests so far; together they say"));
+  EXPECT_FALSE(from_words(
+      "this test alone says: no work yet. The advice rests on all tests so far; together they say the same"));
 }
 
 }  // namespace

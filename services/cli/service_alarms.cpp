@@ -36,7 +36,7 @@ constexpr std::array kMeanings = {
     Row{"missing_blocks", "samples do not come"},
     Row{"unknown_asset", "messages about assets that are not configured"},
     Row{"refused_right", "connection refused"},
-    Row{kAdviceAlarm, "asked for"},
+    Row{kAdviceAlarm, "advice"},
     Row{kOverdueAlarm, "a test is overdue"},
     Row{kOutOfServiceAlarm, "work in progress"},
 };
@@ -51,13 +51,6 @@ bool is_same(const ServiceAlarm& a, const ServiceAlarm& b) {
   return a.kind == b.kind && a.asset_id == b.asset_id && a.subject == b.subject;
 }
 
-/// Active, and set aside by nobody and by no design.
-bool is_in_view(const HeardAlarm& heard, UtcTime now) {
-  if (!heard.entry) return true;
-  const AlarmState state = state_of(*heard.entry, now);
-  return state == AlarmState::unacknowledged || state == AlarmState::acknowledged;
-}
-
 std::string begin_of(const HeardAlarm& heard, UtcTime now) {
   if (!heard.entry) return "ALARM";
   const AlarmEntry& entry = *heard.entry;
@@ -67,7 +60,7 @@ std::string begin_of(const HeardAlarm& heard, UtcTime now) {
     case AlarmState::acknowledged:
       return "ALARM, acknowledged by " + entry.acknowledged_by;
     case AlarmState::returned:
-      return "ENDED " + to_the_second({entry.ended_ns}) + ", nobody has acknowledged it";
+      return "ENDED " + to_the_second({entry.ended_ns}) + ", not acknowledged";
     case AlarmState::shelved:
       return "SHELVED until " + to_the_second({entry.shelved_until_ns}) + " by " + entry.shelved_by + ", " +
              entry.shelved_reason;
@@ -83,15 +76,21 @@ std::string begin_of(const HeardAlarm& heard, UtcTime now) {
 std::string command_for(const HeardAlarm& heard, UtcTime now) {
   const ServiceAlarm& alarm = heard.alarm;
   const std::string asset = alarm.asset_id.empty() ? "-" : shell_word(alarm.asset_id);
-  if (alarm.kind == "set_aside") return " (sealwatch quarantine retry " + alarm.subject + " --by NAME)";
+  if (alarm.kind == "set_aside") return "sealwatch quarantine retry " + alarm.subject + " --by NAME";
   if (alarm.kind == "awaits_confirmation")
-    return " (sealwatch confirm " + asset + " " + shell_word(alarm.subject) + " --by NAME)";
-  if (alarm.kind == kOutOfServiceAlarm) return " (sealwatch in-service " + asset + " --by NAME)";
+    return "sealwatch confirm " + asset + " " + shell_word(alarm.subject) + " --by NAME";
+  if (alarm.kind == kOutOfServiceAlarm) return "sealwatch in-service " + asset + " --by NAME";
   const bool is_unseen = heard.entry && state_of(*heard.entry, now) == AlarmState::returned;
-  return is_unseen ? " (sealwatch acknowledge " + asset + " " + shell_word(alarm_id(alarm)) + " --by NAME)" : "";
+  return is_unseen ? "sealwatch acknowledge " + asset + " " + shell_word(alarm_id(alarm)) + " --by NAME" : "";
 }
 
 }  // namespace
+
+bool is_in_view(const HeardAlarm& heard, UtcTime now) {
+  if (!heard.entry) return true;
+  const AlarmState state = state_of(*heard.entry, now);
+  return state == AlarmState::unacknowledged || state == AlarmState::acknowledged;
+}
 
 std::vector<HeardAlarm> alarms_of(const std::vector<ServicesHeard::Service>& services) {
   std::vector<AlarmEntry> entries;
@@ -138,16 +137,17 @@ bool stands_in_advisory(const HeardAlarm& heard, UtcTime now) {
   return is_advice(heard.alarm) && is_in_view(heard, now);
 }
 
-std::string one_line(const HeardAlarm& heard, UtcTime now) {
+std::string lines_of(const HeardAlarm& heard, UtcTime now) {
   const ServiceAlarm& alarm = heard.alarm;
   const Row* const row = row_of(alarm.kind);
   std::string line = begin_of(heard, now) + " (" + std::string(words(category_of(alarm.kind))) + ")  " + heard.service;
   if (!alarm.asset_id.empty()) line += "  " + alarm.asset_id;
   line += "  " + std::string(row == nullptr ? std::string_view(alarm.kind) : row->meaning);
   if (alarm.since_ns != 0) line += " since " + to_the_second({alarm.since_ns});
-  line += ": " + (alarm.subject.empty() ? "" : alarm.subject + ": ") + alarm.text + command_for(heard, now);
+  line += ": " + (alarm.subject.empty() ? "" : alarm.subject + ": ") + alarm.text;
   if (heard.untold > 0) line += "; and " + std::to_string(heard.untold) + " more: sealwatch quarantine list";
-  return line;
+  const std::string command = command_for(heard, now);
+  return wrapped(line, 120, 2) + "\n" + (command.empty() ? "" : "  (" + command + ")\n");
 }
 
 }  // namespace sealwatch::cli

@@ -26,6 +26,9 @@ struct HeardAlarm {
 [[nodiscard]] bool is_blind(const std::vector<HeardAlarm>& alarms, UtcTime now);
 /// Whether it says no more than the advisory of its asset.
 [[nodiscard]] bool stands_in_advisory(const HeardAlarm& heard, UtcTime now);
-[[nodiscard]] std::string one_line(const HeardAlarm& heard, UtcTime now);
+/// Active, and set aside by nobody and by no design.
+[[nodiscard]] bool is_in_view(const HeardAlarm& heard, UtcTime now);
+/// What it says, broken into lines, and on a line of its own the command that answers it, to be pasted.
+[[nodiscard]] std::string lines_of(const HeardAlarm& heard, UtcTime now);
 
 }  // namespace sealwatch::cli

@@ -10,6 +10,7 @@
 #include "services/cli/service_alarms.hpp"
 #include "services/cli/services_heard.hpp"
 #include "services/cli/session.hpp"
+#include "services/cli/status_overview.hpp"
 #include "services/cli/summary.hpp"
 #include "services/cli/supervisor.hpp"
 #include "services/common/message/json.hpp"
@@ -99,10 +100,12 @@ void print_text(const Heard& heard, const std::vector<std::string>& configured, 
         "machine, listen longer: --seconds %g)\n",
         seconds, 4.0 * seconds);
   } else {
-    for (const auto& service : heard.services.list(ServicesHeard::Clock::now()))
-      std::printf("%s\n", one_line(service).c_str());
-    for (const HeardAlarm& alarm : alarms_of(heard.services.list(ServicesHeard::Clock::now())))
-      if (!stands_in_advisory(alarm, now())) std::printf("%s\n", one_line(alarm, now()).c_str());
+    const std::vector<ServicesHeard::Service> services = heard.services.list(ServicesHeard::Clock::now());
+    const std::vector<HeardAlarm> alarms = alarms_of(services);
+    std::printf("%s\n", status_overview(services, alarms, heard.assets, now()).c_str());
+    for (const auto& service : services) std::printf("%s\n", one_line(service).c_str());
+    for (const HeardAlarm& alarm : alarms)
+      if (!stands_in_advisory(alarm, now())) std::printf("%s", lines_of(alarm, now()).c_str());
   }
   for (const auto& [asset, view] : heard.assets) std::printf("\n%s", view.screen().c_str());
   if (heard.services.none()) return;

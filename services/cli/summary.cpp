@@ -126,12 +126,24 @@ std::string AssetView::forecast_lines() const {
   return text + scored_line(*life_) + decision_chart(life_->decision);
 }
 
+namespace {
+
+std::string in_one_line(const Advisory& advisory) {
+  std::string text = upper(name_of(advisory.priority)) + ", " + text::in_words(name_of(advisory.action));
+  if (advisory.latest_by_known) text += ", latest by " + date(advisory.latest_by_ns);
+  if (advisory.state == AdvisoryState::acknowledged) text += ", acknowledged by " + advisory.acknowledged_by;
+  return text;
+}
+
+}  // namespace
+
+std::string AssetView::call() const {
+  return advisory_ && advisory_->action != AdvisoryAction::none ? in_one_line(*advisory_) : "";
+}
+
 std::string AssetView::advisory_lines(bool services_run) const {
   if (!advisory_) return {};
-  std::string text =
-      "  advisory         " + upper(name_of(advisory_->priority)) + ", " + text::in_words(name_of(advisory_->action));
-  if (advisory_->latest_by_known) text += ", latest by " + date(advisory_->latest_by_ns);
-  if (advisory_->state == AdvisoryState::acknowledged) text += ", acknowledged by " + advisory_->acknowledged_by;
+  std::string text = "  advisory         " + in_one_line(*advisory_);
   text += "\n                   " + wrapped(advisory_->recommendation, 100, 19) + "\n";
   for (const std::string& reason : advisory_->reasons)
     text += "                   - " + wrapped(reason, 100, 21) + "\n";

@@ -22,6 +22,8 @@ class AssetView {
   /// further. Where no services run (any more) nobody could take an acknowledgement, so the hint to give one is left
   /// out.
   [[nodiscard]] std::string screen(bool services_run = true) const;
+  /// What the advice asks for: "HIGH, book vessel, latest by 2018-05-31"; "" where it asks for nothing.
+  [[nodiscard]] std::string call() const;
   /// The same for machines: the last message of each topic (schema sealwatch.asset/1).
   [[nodiscard]] std::string json() const;
   /// Tests seen, and those whose estimate took part in the forecast.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "services/cli/service_alarms.hpp"
+#include "services/cli/status_overview.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -114,11 +115,11 @@ TEST_F(Listening, TellsWhatServicesCannotMendByThemselvesWithItsCategory) {
   heard_.take(status, now_);
   const std::vector<HeardAlarm> alarms = alarms_of(heard_.list(now_));
   ASSERT_EQ(alarms.size(), 2U);
-  EXPECT_EQ(one_line(alarms[0], kNow),
+  EXPECT_EQ(lines_of(alarms[0], kNow),
             "ALARM (failure)  data_acquisition  A  set aside after two failures since 2030-03-17T17:46:40Z: "
-            "raw_samples/R/1: no such phase (sealwatch quarantine retry raw_samples/R/1 --by NAME); and 3 more: "
-            "sealwatch quarantine list");
-  EXPECT_EQ(one_line(alarms[1], kNow), "ALARM (failure)  health_assessment  is not heard: no heartbeat");
+            "raw_samples/R/1: no\n  such phase; and 3 more: sealwatch quarantine list\n"
+            "  (sealwatch quarantine retry raw_samples/R/1 --by NAME)\n");
+  EXPECT_EQ(lines_of(alarms[1], kNow), "ALARM (failure)  health_assessment  is not heard: no heartbeat\n");
   heard_.take(beat("data_acquisition", 7), now_);
   heard_.take(beat("health_assessment", 8), now_);
   EXPECT_TRUE(alarms_of(heard_.list(now_)).empty()) << "it is over";
@@ -133,8 +134,8 @@ TEST_F(Listening, OnlyWhatIsNotSeenNowCountsAsBlind) {
     heard_.take(beat("health_assessment", 8), now_);
     return alarms_of(heard_.list(now_));
   };
-  EXPECT_EQ(one_line(alarm_of("clock_unsynchronised")[0], kNow),
-            "ALARM (maintenance required)  data_acquisition  clock is not synchronised: why");
+  EXPECT_EQ(lines_of(alarm_of("clock_unsynchronised")[0], kNow),
+            "ALARM (maintenance required)  data_acquisition  clock is not synchronised: why\n");
   EXPECT_FALSE(is_blind(alarm_of("clock_unsynchronised"), kNow)) << "it is right still, and will not be for ever";
   for (const char* kind : {"sensor_lost", "future_test", "refused_test", "unknown_writer", "unknown_asset",
                            "refused_right", "flood", "clock_step", "rival", "set_aside"})
@@ -156,9 +157,9 @@ TEST_F(Listening, SaysTheStateThatAdvisoryGenerationKeepsOfAnAlarm) {
     heard_.take(desk, now_);
     const auto alarms = alarms_of(heard_.list(now_));
     EXPECT_EQ(alarms.size(), 1U);
-    return std::pair(one_line(alarms[0], kNow), is_blind(alarms, kNow));
+    return std::pair(lines_of(alarms[0], kNow), is_blind(alarms, kNow));
   };
-  const std::string rest = " (failure)  data_acquisition  A  sensor lost: flow: flat";
+  const std::string rest = " (failure)  data_acquisition  A  sensor lost: flow: flat\n";
   AlarmEntry entry;
   entry.service = "data_acquisition";
   entry.alarm = lost;
@@ -194,10 +195,21 @@ TEST_F(Listening, ListsWhatReturnedUnseenAndLeavesAdviceToItsAdvisory) {
   heard_.take(status, now_);
   const auto alarms = alarms_of(heard_.list(now_));
   ASSERT_EQ(alarms.size(), 2U);
-  EXPECT_EQ(
-      one_line(alarms[0], kNow),
-      "ENDED 2030-03-17T17:46:40Z, nobody has acknowledged it (failure)  state_detection  A  sensor lost: flow: flat "
-      "(sealwatch acknowledge A sensor_lost/flow --by NAME)");
+  EXPECT_EQ(lines_of(alarms[0], kNow),
+            "ENDED 2030-03-17T17:46:40Z, not acknowledged (failure)  state_detection  A  sensor lost: flow: flat\n"
+            "  (sealwatch acknowledge A sensor_lost/flow --by NAME)\n");
+  EXPECT_EQ(status_overview(heard_.list(now_), alarms, {}, kNow),
+            "2 of 2 services well, no alarm, 1 ended alarm to acknowledge\n");
+  Advisory book;
+  book.asset_id = "A";
+  book.action = AdvisoryAction::book_vessel;
+  book.priority = AdvisoryPriority::high;
+  std::map<std::string, AssetView> assets;
+  assets["A"].take(Message(book));
+  EXPECT_THAT(status_overview(heard_.list(now_), alarms, assets, kNow), HasSubstr("\nA: HIGH, book vessel\n"));
+  book.action = AdvisoryAction::none;
+  assets["A"].take(Message(book));
+  EXPECT_THAT(status_overview(heard_.list(now_), alarms, assets, kNow), HasSubstr("\nno actuator asks for action\n"));
   EXPECT_FALSE(is_blind(alarms, kNow));
   EXPECT_FALSE(stands_in_advisory(alarms[0], kNow));
   EXPECT_TRUE(stands_in_advisory(alarms[1], kNow));

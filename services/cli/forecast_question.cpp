@@ -261,7 +261,7 @@ std::vector<DecisionOption> decision_of(const ForecastQuestion& question,
   for (std::size_t k = 0; k < decision->rows.size(); ++k) {
     const forecast::DecisionRow& row = decision->rows[k];
     options.push_back({.label = row.label,
-                       .at_ns = add_months(now, row.months).nanoseconds,
+                       .at_ns = row.date(now).nanoseconds,
                        .months = row.months,
                        .failure_probability = row.failure_probability,
                        .cost_known = question.costs.has_value(),

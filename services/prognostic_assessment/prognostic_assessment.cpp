@@ -280,7 +280,7 @@ void PrognosticAssessment::add_decision(const AssetConfig& asset, UtcTime now,
   for (std::size_t k = 0; k < decision->rows.size(); ++k) {
     const forecast::DecisionRow& row = decision->rows[k];
     life.decision.push_back({.label = row.label,
-                             .at_ns = add_months(now, row.months).nanoseconds,
+                             .at_ns = row.date(now).nanoseconds,
                              .months = row.months,
                              .failure_probability = row.failure_probability,
                              .cost_known = given.has_value(),

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "sealwatch/core/result.hpp"
+#include "sealwatch/core/time.hpp"
 #include "sealwatch/forecast/predictive_distribution.hpp"
 
 namespace sealwatch::forecast {
@@ -43,6 +44,9 @@ struct DecisionRow {
   double failure_probability = 0.0;  ///< before that date; for waiting 1
   double expected_cost = 0.0;
   bool waiting = false;
+  /// Date of the row, whose `months` count from `now`. They give a time back within 0.1 us only, which may fall on the
+  /// day before: rounded to the microsecond.
+  [[nodiscard]] UtcTime date(UtcTime now) const;
 };
 
 struct Decision {

@@ -27,6 +27,13 @@ Status InterventionCosts::validate() const {
   return {};
 }
 
+UtcTime DecisionRow::date(UtcTime now) const {
+  constexpr std::int64_t kMicrosecond_ns = 1000;
+  const std::int64_t time_ns = add_months(now, months).nanoseconds;
+  const std::int64_t since_ns = ((time_ns % kMicrosecond_ns) + kMicrosecond_ns) % kMicrosecond_ns;
+  return {time_ns - since_ns + (2 * since_ns >= kMicrosecond_ns ? kMicrosecond_ns : 0)};
+}
+
 Result<Decision> weigh_candidates(const PredictiveDistribution& remaining_life, std::span<const Candidate> candidates,
                                   const InterventionCosts& costs) {
   if (const Status valid = costs.validate(); !valid) return fail(valid.error());

@@ -37,6 +37,23 @@ TEST(Decision, BeforeTheEarliestFailureLaterIsCheaper) {
   EXPECT_EQ(weigh_candidates(uniform_10_30(), dear, kCosts)->cheapest, 0u);
 }
 
+// A replacement on 2031-06-01 was shown as of 2031-05-31: months give a time back within some 100 ns.
+TEST(Decision, HasTheDateThatWasAskedFor) {
+  const UtcTime now = parse_utc("2019-12-12").value();
+  int lost = 0;
+  for (const char* day : {"2020-01-01", "2021-06-01", "2023-06-01", "2030-06-01", "2031-06-01", "2032-06-01"}) {
+    const UtcTime asked = parse_utc(day).value();
+    const std::vector<Candidate> candidates{{.label = day, .months = months_between(now, asked)}};
+    const Decision decision = weigh_candidates(uniform_10_30(), candidates, kCosts).value();
+    EXPECT_EQ(decision.rows.front().date(now), asked) << day;
+    lost += add_months(now, decision.rows.front().months) < asked ? 1 : 0;
+  }
+  EXPECT_GT(lost, 0) << "else this shows nothing";
+  DecisionRow before_1970;
+  before_1970.label = "now";
+  EXPECT_EQ(before_1970.date({-1'499}), UtcTime{-1'000});
+}
+
 TEST(Decision, RefusesNonsense) {
   EXPECT_FALSE(weigh_candidates(uniform_10_30(), std::vector<Candidate>{{.label = "past", .months = -1.0}}, kCosts));
   EXPECT_FALSE(weigh_candidates(uniform_10_30(), {}, InterventionCosts{.after_failure = -1.0}));

@@ -278,12 +278,12 @@ std::string layout_yaml(const Understood& log) {
 
 std::string yaml_of(const Understood& log, const AssetNewOptions& options) {
   const std::string model = model_name(*log.plant, fs::path(options.file).parent_path());
-  std::string out = "# From " + fs::path(options.log).filename().string() +
-                    ": what sealwatch understood of it. Correct what is wrong; docs/logs.md, docs/asset-file.md.\n";
+  std::string out = "# Written from " + fs::path(options.log).filename().string() +
+                    ". Correct what is wrong (docs/logs.md, docs/asset-file.md).\n";
   for (const std::string& remark : log.remarks) out += "# " + remark + "\n";
   out +=
       "asset_id: " + text::quoted(asset_id_of(log, options)) + "\nmodel: " + model + "  # " + log.plant->meaning + "\n";
-  out += "# The plant's own values hold until yours stand here, in SI units:\n# parameters: {";
+  out += "# Parameters that you leave out keep the plant's defaults; give yours in SI units, such as\n# parameters: {";
   for (std::size_t k = 0; k < std::min<std::size_t>(3, log.plant->parameters.size()); ++k)
     out.append(k > 0 ? ", " : "")
         .append(log.plant->parameters[k].name)
@@ -348,7 +348,8 @@ void print_not_found(const Understood& log, const std::string& file) {
                   may_be.c_str());
   }
   if (!absent.empty())
-    std::printf("  no column of %s has the unit of: %s; map by hand what the log has\n", file.c_str(), absent.c_str());
+    std::printf("  no column of %s has the unit of %s; map by hand what the log has (docs/logs.md)\n", file.c_str(),
+                absent.c_str());
 }
 
 void print_table(const Understood& log, const std::string& file) {
@@ -533,6 +534,29 @@ void note_unit_of_time(Understood& log, std::size_t time) {
                         mapping.unit + (counts_by_one(log.offer, time) ? "; if it counts samples: " + steps : ""));
 }
 
+/// How far the plant can be relied on: with columns named as its channels, or by units that any machine may have.
+void note_guessed_plant(Understood& log) {
+  const bool named = std::ranges::any_of(log.guesses, &ChannelGuess::sure);
+  log.remarks.insert(
+      log.remarks.begin(),
+      named
+          ? "plant " + log.plant->name +
+                " is a guess: of the built-in plants it fits the columns best; for another plant give --model FILE.yaml"
+          : "plant " + log.plant->name +
+                " was chosen by the units alone and is probably not your machine; describe yours in a file "
+                "(docs/tutorial-plant.md) and give --model FILE.yaml");
+}
+
+/// Inputs of the plant that the log does not have.
+void note_missing_inputs(Understood& log) {
+  std::string missing;
+  for (const ChannelDescription& channel : log.plant->channels)
+    if (channel.input && !log.map.columns.contains(channel.name)) text::add_to_list(missing, channel.name);
+  if (!missing.empty())
+    log.remarks.push_back("plant " + log.plant->name + " cannot be simulated as a whole: the log lacks its input " +
+                          missing);
+}
+
 Result<Understood> understand(const AssetNewOptions& options) {
   Result<Offer> offer = offer_of(options.log, {});
   if (!offer) return fail(offer.error());
@@ -551,9 +575,6 @@ Result<Understood> understand(const AssetNewOptions& options) {
       options.model.empty() ? &guess_plant(log.offer, time) : named_plant(options.model);
   if (!wanted) return fail(wanted.error());
   log.plant = *wanted;
-  if (options.model.empty())
-    log.remarks.push_back("plant " + log.plant->name +
-                          " is a guess, the built-in plant that fits best; for your own plant give --model FILE.yaml");
   if (time == kNoColumn)
     log.remarks.push_back("no column holds times: the rows are taken as " +
                           text::readable(log.map.columns["time"].scale, "s") + " apart, as the log's head says");
@@ -563,8 +584,10 @@ Result<Understood> understand(const AssetNewOptions& options) {
   if (!options.yes && isatty(STDIN_FILENO) != 0) ask(log);
   set_layout(log);
   set_columns(log);
+  if (options.model.empty()) note_guessed_plant(log);
   if (log.guesses.empty()) return fail(nothing_like_a_channel(log, options));
   if (const Status read = read_by_map(options.log, log); !read) return fail(read.error());
+  note_missing_inputs(log);
   note_switched_inputs(log);
   note_gaps(log);
   note_fill_values(log);
@@ -600,9 +623,8 @@ int run_asset_new(const AssetNewOptions& options) {
                                                : ", from the log's name";
   std::printf("  asset id: %s%s; change it under asset_id in %s, or give --id\n", id.c_str(), from,
               options.file.c_str());
-  std::printf(
-      "written: %s, with plots in %s. Correct what is wrong, then for instance:\n  sealwatch fit --asset %s %s\n",
-      options.file.c_str(), page.c_str(), options.file.c_str(), options.log.c_str());
+  std::printf("wrote %s, and plots of it to %s. Correct what is wrong, then try\n  sealwatch fit --asset %s %s\n",
+              options.file.c_str(), page.c_str(), options.file.c_str(), options.log.c_str());
   return kOk;
 }
 

@@ -65,6 +65,24 @@ TEST_F(AssetNew, TheWrittenFileReadsTheLogWithoutFurtherWork) {
   EXPECT_TRUE(std::filesystem::exists(path("a.html")));
 }
 
+TEST_F(AssetNew, SaysHowFarAGuessedPlantCanBeReliedOn) {
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(make("time[s],u[V],y[V]\n0,1.5,0.1\n0.1,1.2,0.2\n0.2,1.7,0.3\n"), kOk);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              testing::HasSubstr("was chosen by the units alone and is probably not your machine"));
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(make("time[s],position[mm],pressure_a[bar],rod_force[N]\n0,1.5,0.1,3\n0.1,1.2,0.2,4\n"), kBadInput)
+      << "it is there already";
+  (void)testing::internal::GetCapturedStdout();
+  std::filesystem::remove(path("a.yaml"));
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(make("time[s],position[mm],pressure_a[bar],rod_force[N]\n0,1.5,0.1,3\n0.1,1.2,0.2,4\n"), kOk);
+  const std::string said = testing::internal::GetCapturedStdout();
+  EXPECT_THAT(said, testing::HasSubstr("plant eha is a guess: of the built-in plants it fits the columns best"));
+  EXPECT_THAT(said,
+              testing::HasSubstr("plant eha cannot be simulated as a whole: the log lacks its input motor_voltage"));
+}
+
 TEST_F(AssetNew, ALogWithoutATimeIsRefused) {
   testing::internal::CaptureStderr();
   EXPECT_EQ(make("U [V];Weg [mm]\n1,5;60\n1,2;59\n1,7;58\n"), kBadInput);
@@ -429,7 +447,7 @@ TEST_F(AssetNew, AColumnWhoseCellsAreNoNumbersIsNamed) {
   const std::string told = ::testing::internal::GetCapturedStdout();
   EXPECT_THAT(told, ::testing::HasSubstr("output pressure [Pa] not found in "));
   EXPECT_THAT(told, ::testing::HasSubstr("may be it, but '12.5 or so' in row 3"));
-  EXPECT_THAT(told, ::testing::HasSubstr("has the unit of: valve_lift [m]"));
+  EXPECT_THAT(told, ::testing::HasSubstr("has the unit of valve_lift [m]"));
   std::ostringstream text;
   text << std::ifstream(path("a.yaml")).rdbuf();
   EXPECT_THAT(text.str(), ::testing::HasSubstr("Pressure [psig] may be it, but '12.5 or so' in row 3 is not a number"));

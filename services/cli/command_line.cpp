@@ -83,7 +83,9 @@ int CommandLine::run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     // A misspelt option comes before what is missing because of it.
     if (error.get_exit_code() != 0 && tells_unknown_option()) return kBadInput;
-    return app_.exit(error) == 0 ? kOk : kBadInput;
+    if (error.get_exit_code() == 0) return app_.exit(error), kOk;
+    std::cerr << failure(error);
+    return kBadInput;
   }
   return chosen_();
 }
@@ -145,9 +147,21 @@ std::vector<std::string> CommandLine::commands() const {
   return names;
 }
 
-bool CommandLine::tells_unknown_option() const {
+const CLI::App* CommandLine::given() const {
   const CLI::App* command = &app_;
   while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  return command;
+}
+
+std::string CommandLine::failure(const CLI::Error& error) const {
+  std::string name;
+  for (const CLI::App* app = given(); app != nullptr; app = app->get_parent())
+    name.insert(0, name.empty() ? app->get_name() : app->get_name() + " ");
+  return name + ": " + error.what() + "; " + name + " --help has an example\n";
+}
+
+bool CommandLine::tells_unknown_option() const {
+  const CLI::App* command = given();
   const std::vector<std::string> left = command->remaining();
   const auto option = std::ranges::find_if(left, [](const std::string& one) { return one.starts_with("--"); });
   if (option == left.end() || *option == "--") return false;
@@ -155,8 +169,11 @@ bool CommandLine::tells_unknown_option() const {
   for (const CLI::Option* one : command->get_options())
     for (const std::string& name : one->get_lnames()) known.push_back("--" + name);
   const std::string given = option->substr(0, option->find('='));
-  complain(
-      Error{.file = {}, .place = {}, .value = given, .rule = "is not an option here", .advice = suggest(given, known)});
+  complain(Error{.file = {},
+                 .place = {},
+                 .value = given,
+                 .rule = "is not an option of this command",
+                 .advice = suggest(given, known)});
   return true;
 }
 

@@ -44,6 +44,10 @@ class CommandLine {
   [[nodiscard]] int unknown(const std::string& name) const;
   /// Whether an option that was given is none of its command's; says so.
   [[nodiscard]] bool tells_unknown_option() const;
+  /// The command that was given, with that of a group such as `plant check`.
+  [[nodiscard]] const CLI::App* given() const;
+  /// "sealwatch fit: --asset is required; sealwatch fit --help has an example".
+  [[nodiscard]] std::string failure(const CLI::Error& error) const;
 
   CLI::App app_;
   std::string group_;

@@ -261,7 +261,7 @@ Result<Explanation> analyse(const ExplainEngine& engine, const ExplainOptions& o
   settings.threads = options.threads;
   settings.time_limit_s = options.time_limit_s;
   settings.time_used_s = std::chrono::duration<double>(Deadline::Clock::now() - begin).count();
-  Progress progress("explain", 100);
+  Progress progress("explain", 100, "%");
   return engine(asset, fit, holdout, settings, [&progress](std::string_view step, double share) {
     progress.show(static_cast<std::size_t>(std::lround(100.0 * share)), step);
   });

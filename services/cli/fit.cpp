@@ -51,7 +51,7 @@ FitResult fit_whole(const AssetConfig& asset, const std::vector<Recording>& reco
   ActuatorFitOptions search = search_of(asset);
   search.threads = threads;
   search.deadline = &deadline;
-  Progress progress("fit", 100);
+  Progress progress("fit", 100, "%");
   static constexpr std::chrono::seconds kLong{5};  // one that takes less is told by its result alone
   const auto begin = Deadline::Clock::now();
   search.progress = [&progress, begin](std::string_view step, double share) {

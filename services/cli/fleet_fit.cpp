@@ -95,11 +95,11 @@ std::string json_of(const FleetFit& fit, const FleetErrors& errors, const FleetC
 
 void print_text(const FleetFit& fit, const FleetErrors& errors, const FleetConstants& constants) {
   const forecast::FleetPopulation reference;
-  std::printf("%d %s; the reference counts as %s lives more\n", fit.lives, fit.lives == 1 ? "life" : "lives",
+  std::printf("%d %s; the built-in population counts as %s more\n", fit.lives, fit.lives == 1 ? "life" : "lives",
               text::general(kReferenceLives).c_str());
   if (fit.passed_over > 0)
-    std::printf("  passed over, with fewer than %d tests: %d\n", forecast::kFewestTestsOfLife, fit.passed_over);
-  std::printf("  %-22s %14s    %-12s %14s\n", "constant", "fleet", "std. error", "reference");
+    std::printf("  left out, with fewer than %d tests: %d\n", forecast::kFewestTestsOfLife, fit.passed_over);
+  std::printf("  %-22s %14s    %-12s %14s\n", "constant", "fleet", "std. error", "built-in");
   const auto row = [](const char* name, double value, double error, double usual) {
     std::printf("  %-22s %14s  ± %-12s %14s\n", name, number(value, 4).c_str(), number(error, 2).c_str(),
                 number(usual, 4).c_str());
@@ -112,13 +112,12 @@ void print_text(const FleetFit& fit, const FleetErrors& errors, const FleetConst
                 number(reference.irregularity_std, 4).c_str());
   else
     row("irregularity_std", fit.population.irregularity_std, errors.irregularity_std, reference.irregularity_std);
-  std::printf("  a mean seal from new to 0.6: %s months, by the reference %s\n",
+  std::printf("  an average seal fails (0.6) after %s months; with the built-in population, after %s\n",
               number(mean_remaining_months(fit.population.initial_condition, 0.6, fit.population), 3).c_str(),
               number(mean_remaining_months(reference.initial_condition, 0.6, reference), 3).c_str());
   if (fit.irregularity_is_limit)
-    std::printf(
-        "  the histories are as regular as their errors let them be seen: irregularity_std is an upper limit\n");
-  std::printf("\nFor the configuration; the spreads hold the errors of the means:\n%s", yaml_of(constants).c_str());
+    std::printf("  no irregularity beyond the standard errors of the tests: irregularity_std is an upper limit\n");
+  std::printf("\nFor sealwatch.yaml (each _std includes the uncertainty of its mean):\n%s", yaml_of(constants).c_str());
 }
 
 }  // namespace

@@ -106,8 +106,8 @@ std::string scored_line(const RemainingLife& life) {
   const int of_80 = static_cast<int>(std::lround(life.coverage_80 * n));
   const int of_95 = static_cast<int>(std::lround(life.coverage_95 * n));
   const bool drifted = life.confidence < kDoubtful;
-  return "  scored           of the last " + count_of(static_cast<std::size_t>(n), "forecast") + ", 3 months ahead, " +
-         std::to_string(of_80) + " came true within their 80 % interval, " + std::to_string(of_95) + " within 95 %" +
+  return "  scored           of the last " + count_of(static_cast<std::size_t>(n), "forecast") + " (3 months ahead), " +
+         std::to_string(of_80) + " held within their 80 % interval, " + std::to_string(of_95) + " within 95 %" +
          (drifted ? "; the forecaster has probably drifted" : verdict_on(of_80, of_95, n)) + "\n";
 }
 

@@ -16,7 +16,8 @@ constexpr std::array kTopics = {Topic::test_features,    Topic::state_report,   
 
 }  // namespace
 
-ReplayLog::ReplayLog(const ReplayOptions& options, std::size_t tests) : options_(options), progress_("replay", tests) {}
+ReplayLog::ReplayLog(const ReplayOptions& options, std::size_t tests)
+    : options_(options), progress_("replay", tests, "tests") {}
 
 std::span<const Topic> ReplayLog::topics() { return kTopics; }
 

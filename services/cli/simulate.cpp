@@ -99,7 +99,7 @@ Status write_life(const AssetConfig& asset, const bench::LifeSetting& life, cons
     return fail(Error{.file = folder.string(), .place = {}, .value = {}, .rule = "cannot be written to", .advice = {}});
   bench::TestSetting setting;
   setting.sample_rate_Hz = options.sample_rate_Hz;
-  Progress progress("simulate", plan.size());
+  Progress progress("simulate", plan.size(), "months");
   for (std::size_t k = 0; k < plan.size(); ++k) {
     progress.show(k, format_date(plan[k].start_time));
     if (plan[k].recorded_share <= 0.0) {

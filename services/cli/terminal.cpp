@@ -28,18 +28,20 @@ std::string bar(double share, std::size_t cells) {
 void Progress::show(std::size_t done, std::string_view remark) {
   done = std::min(done, total_);  // services may conclude from tests of before, too: never "2 of 1"
   const std::size_t tenth = total_ == 0 ? 10 : 10 * done / total_;
+  const std::string state = std::to_string(done)
+                                .append(thing_ == "%" ? " %" : " of " + std::to_string(total_) + " " + thing_)
+                                .append(remark.empty() ? "" : ", ")
+                                .append(remark);
   if (isatty(STDERR_FILENO) != 0) {
     constexpr int kBar = 24;
     const int filled = total_ == 0 ? kBar : static_cast<int>(kBar * done / total_);
-    std::fprintf(stderr, "\r\033[K%s [%s%s] %zu/%zu %.*s", what_.c_str(),
+    std::fprintf(stderr, "\r\033[K%s [%s%s] %s", what_.c_str(),
                  std::string(static_cast<std::size_t>(filled), '#').c_str(),
-                 std::string(static_cast<std::size_t>(kBar - filled), '.').c_str(), done, total_,
-                 static_cast<int>(remark.size()), remark.data());
+                 std::string(static_cast<std::size_t>(kBar - filled), '.').c_str(), state.c_str());
     std::fflush(stderr);
     drawn_ = true;
   } else if (tenth > last_tenth_) {
-    std::fprintf(stderr, "%s: %zu of %zu %.*s\n", what_.c_str(), done, total_, static_cast<int>(remark.size()),
-                 remark.data());
+    std::fprintf(stderr, "%s: %s\n", what_.c_str(), state.c_str());
     last_tenth_ = tenth;
   }
 }

@@ -33,10 +33,12 @@ using text::wrapped;
 /// dot.
 [[nodiscard]] std::string bar(double share, std::size_t cells = 20);
 
-/// One line on standard error that is overwritten, when that is a terminal; otherwise a line every ten percent.
+/// One line on standard error that is overwritten, when that is a terminal; otherwise a line every ten percent:
+/// "replay: 11 of 106 tests, 2010-02-23". Of `thing` "%", `total` is 100: "fit: 17 %, iteration 2".
 class Progress {
  public:
-  Progress(std::string what, std::size_t total) : what_(std::move(what)), total_(total) {}
+  Progress(std::string what, std::size_t total, std::string thing)
+      : what_(std::move(what)), total_(total), thing_(std::move(thing)) {}
   ~Progress() { finish(); }
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -48,6 +50,7 @@ class Progress {
  private:
   std::string what_;
   std::size_t total_;
+  std::string thing_;
   std::size_t last_tenth_ = 0;
   bool drawn_ = false;
 };

@@ -49,10 +49,11 @@ std::string alteration_table(const std::vector<Alteration>& alterations) {
 
 std::string channel_part(const trace::TraceComparison& comparison, const ChannelComparison& channel) {
   const std::string finding = channel.differs ? "Differs beyond noise" : "No difference beyond noise";
-  std::string body = report::paragraph(finding + std::string(" (p ") + text::p_value_text(channel.p_value) +
-                                       "): root mean square " + text::readable(channel.rms, channel.unit) + ", noise " +
-                                       text::readable(channel.noise_std, channel.unit) + " with " +
-                                       text::number_text(channel.effective_samples) + " effective samples.");
+  std::string body =
+      report::paragraph(finding + std::string(" (p ") + text::p_value_text(channel.p_value) +
+                        "): " + text::readable(channel.rms, channel.unit) + " rms, unexplained by any alteration " +
+                        text::readable(channel.noise_std, channel.unit) + " with " +
+                        text::number_text(channel.effective_samples) + " effective samples.");
   body += "<div class=\"plots\">";
   for (const report::Plot& plot : {course(comparison, channel), difference(comparison, channel)})
     body.append("<div>").append(report::to_svg(plot)).append("</div>");

@@ -92,11 +92,11 @@ std::string faults_text(const trace::TraceComparison& comparison) {
   std::string text;
   if (!inputs.empty())
     text += "The input itself differs (" + text::joined(inputs) +
-            "): the simulation was not given what the recording was, so its outputs prove nothing; simulate with the "
+            "): simulation and recording had different inputs, so comparing outputs proves nothing; simulate with the "
             "recorded input. ";
   if (!still.empty())
     text += "Recorded " + text::joined(still) + (still.size() > 1 ? " do" : " does") +
-            " not move, while simulated it does: look at the sensor and its cable. ";
+            " not move, but simulated it does: check the sensor and its cable. ";
   return text;
 }
 
@@ -112,7 +112,7 @@ std::string signs_text(const trace::TraceComparison& comparison) {
   if (reversed.empty()) return "";
   const bool all = driven > 1 && reversed_driven == driven;
   return "The sign of " + text::joined(reversed) + " is reversed" +
-         (all ? ", as where the input's is: check both against the rig's wiring. " : ". ");
+         (all ? ", as if the input's were: check both against the wiring of the rig. " : ". ");
 }
 
 std::string listed(const std::vector<Alteration>& alterations) {
@@ -124,8 +124,7 @@ std::string listed(const std::vector<Alteration>& alterations) {
 }  // namespace
 
 std::string trace_summary(const trace::TraceComparison& comparison) {
-  if (comparison.consistent)
-    return "The simulation agrees with the recording: what is left depends on nothing in the simulation.";
+  if (comparison.consistent) return "The simulation agrees with the recording: only noise is left.";
   std::vector<std::string> channels;
   for (const ChannelComparison& channel : comparison.channels)
     if (channel.differs) channels.push_back(text::in_words(channel.name));
@@ -144,7 +143,7 @@ std::string trace_summary(const trace::TraceComparison& comparison) {
 }
 
 std::string trace_limit() {
-  return "A trace shows only what came out, so it cannot name missing physics. For that, give the equations as a text "
+  return "A trace has only outputs, so it cannot name missing physics. For that, give the equations as a text "
          "plant or an FMU (sealwatch plant), and run sealwatch explain on the same recordings.";
 }
 

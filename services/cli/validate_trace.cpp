@@ -31,27 +31,27 @@ void print_alterations(const std::vector<trace::Alteration>& alterations) {
     std::printf("    %6s  %-12s %s\n", text::percent_text(alteration.removed_share).c_str(),
                 alteration.would_do ? "explains it" : "", alteration_text(alteration).c_str());
   }
-  if (shown == 0) std::printf("      nothing that was tried removes any of it\n");
+  if (shown == 0) std::printf("      no alteration that was tried removes any of it\n");
 }
 
 void print_channel(const trace::ChannelComparison& channel) {
   std::printf("\n  %s: %s (p %s)\n", text::in_words(channel.name).c_str(),
               channel.differs ? "differs beyond noise" : "no difference beyond noise",
               text::p_value_text(channel.p_value).c_str());
-  std::printf(
-      "    difference %s rms, of which nothing that was tried explains %s; %s effective samples of %zu; NRMSE %s\n",
-      text::readable(channel.rms, channel.unit).c_str(), text::readable(channel.noise_std, channel.unit).c_str(),
-      text::number_text(channel.effective_samples).c_str(), channel.recorded.size(),
-      text::percent(channel.nrmse_percent / 100.0, 2).c_str());
+  std::printf("    difference %s rms, %s of it unexplained by any alteration; %s effective samples of %zu; NRMSE %s\n",
+              text::readable(channel.rms, channel.unit).c_str(),
+              text::readable(channel.noise_std, channel.unit).c_str(),
+              text::number_text(channel.effective_samples).c_str(), channel.recorded.size(),
+              text::percent(channel.nrmse_percent / 100.0, 2).c_str());
   if (!channel.differs) return;
   std::printf("    shows as: %s\n", wrapped(text::separated(channel.by), kWidth, 4).c_str());
   for (const trace::MisfitInterval& interval : channel.intervals)
-    std::printf("    %6s of its square between %s and %s s\n", text::percent_text(interval.misfit_share).c_str(),
+    std::printf("    %6s of the misfit between %s and %s s\n", text::percent_text(interval.misfit_share).c_str(),
                 number(interval.begin_s).c_str(), number(interval.end_s).c_str());
   for (const trace::RegimeMisfit& regime : channel.regimes)
-    std::printf("    %6s of its square %s (%s of the time), %s rms\n", text::percent_text(regime.misfit_share).c_str(),
-                regime.name.c_str(), text::percent_text(regime.time_share).c_str(),
-                text::readable(regime.rms, channel.unit).c_str());
+    std::printf("    %6s of the misfit when %s (%s of the time), %s rms\n",
+                text::percent_text(regime.misfit_share).c_str(), regime.name.c_str(),
+                text::percent_text(regime.time_share).c_str(), text::readable(regime.rms, channel.unit).c_str());
   if (channel.alterations.empty()) return;
   std::printf("  share of the misfit of %s that each would remove:\n", text::in_words(channel.name).c_str());
   print_alterations(channel.alterations);
@@ -114,10 +114,10 @@ int run_validate_trace(const ValidateOptions& options) {
   const Result<Recording> simulated = recorded ? read_simulated_channels(options.simulated, known->map) : recorded;
   if (!simulated) return complain(simulated.error()), kBadInput;
   tell_warnings(*recorded), tell_warnings(*simulated);
-  Progress progress("comparing", 1 + recorded->samples.channels.size());
+  Progress progress("comparing", 1 + recorded->samples.channels.size(), "channels");
   trace::Options asked;
   asked.inputs = known->inputs;
-  asked.progress = [&progress](std::size_t done, std::size_t) { progress.show(done, "channels"); };
+  asked.progress = [&progress](std::size_t done, std::size_t) { progress.show(done); };
   const auto comparison = trace::compare_traces(recorded->samples, simulated->samples, asked);
   progress.finish();
   if (!comparison) {

@@ -177,7 +177,7 @@ Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const Actua
   if (options.progress)
     rule.on_iteration = [&](int iterations) {
       const double share = std::min(1.0, static_cast<double>(iterations) / options.maximum_iterations);
-      options.progress("iteration " + std::to_string(iterations) + ", most often 5 to 8", share);
+      options.progress("iteration " + std::to_string(iterations) + " (usually 5 to 8)", share);
     };
   BoxSearch in_box(problem, optimum.point, side_by_side);
   SearchEnd end = in_box.run(rule, options.maximum_iterations);

@@ -45,9 +45,10 @@ std::vector<ConditionSample> take_unusable(std::vector<ConditionSample>& history
 }
 
 std::string describe(const Forecast& forecast) {
-  return "by its last " + std::to_string(forecast.window_months) + " months " +
-         text::in_months(forecast.rul_p50_months) + " are left (95 %: " +
-         text::range_in_months(forecast.interval_95_low_months, forecast.interval_95_high_months) + ")";
+  return "the last " + std::to_string(forecast.window_months) + " months of tests give " +
+         text::in_months(forecast.rul_p50_months) +
+         " left (95 %: " + text::range_in_months(forecast.interval_95_low_months, forecast.interval_95_high_months) +
+         ")";
 }
 
 bool apart(const Forecast& a, const Forecast& b) {
@@ -66,8 +67,8 @@ std::string disagreement(const std::vector<Forecast>& forecasts) {
   }
   if (!shortest || !apart(*shortest, *longest)) return {};
   const bool faster = shortest->rul_p50_months < longest->rul_p50_months;
-  return std::string(faster ? "ageing has been faster of late: " : "ageing has been slower of late: ") +
-         describe(*shortest) + ", " + describe(*longest);
+  return std::string(faster ? "ageing has become faster: " : "ageing has become slower: ") + describe(*shortest) +
+         ", " + describe(*longest);
 }
 
 using Made = Result<std::unique_ptr<const Forecaster>>;

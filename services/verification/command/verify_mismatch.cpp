@@ -90,7 +90,7 @@ class Campaign {
         missing_(std::move(missing)),
         records_(records),
         stream_(in(options.directory, kRecords), std::ios::app | std::ios::binary),
-        progress_("verify mismatch, sets", missing_.size()) {}
+        progress_("verify mismatch", missing_.size(), "sets") {}
 
   bool run() {
     const int threads = options_.threads > 0 ? options_.threads : std::max(1U, std::thread::hardware_concurrency());

@@ -154,7 +154,7 @@ ScenarioRun run_scenario(const VerifyRulOptions& options, const AssetConfig& ass
   const auto elapsed = [begin] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
-  Progress progress("verify rul, " + std::string(name_of(scenario)) + " lives", own.size());
+  Progress progress("verify rul, " + std::string(name_of(scenario)), own.size(), "lives");
   const auto outcome = run_lives(*simulator, *store, own, threads, [&](std::size_t done) {
     progress.show(done, number(elapsed(), 3) + " s");
     return !interrupted();

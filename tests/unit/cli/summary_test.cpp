@@ -90,10 +90,9 @@ RemainingLife scored(int forecasts, int within_80, int within_95, double confide
 // P(at most 4 of 8 at 80 %) = 5.6 %, P(at most 3 of 8) = 1.0 %, P(at most 5 of 8) = 20.3 %; P(at most 6 of 8 at 95 %) =
 // 5.7 %, P(at most 5 of 8) = 0.6 %.
 TEST(ScoredLine, JudgesWhereTheFiguresBearIt) {
-  EXPECT_EQ(
-      scored_line(scored(8, 4, 8)),
-      "  scored           of the last 8 forecasts, 3 months ahead, 4 came true within their 80 % interval, 8 within "
-      "95 %: few, but that may be chance\n");
+  EXPECT_EQ(scored_line(scored(8, 4, 8)),
+            "  scored           of the last 8 forecasts (3 months ahead), 4 held within their 80 % interval, 8 within "
+            "95 %: few, but that may be chance\n");
   EXPECT_THAT(scored_line(scored(8, 3, 8)), HasSubstr("95 %: too few, the intervals are too narrow"));
   EXPECT_THAT(scored_line(scored(8, 5, 8)), HasSubstr("95 %: as expected"));
   EXPECT_THAT(scored_line(scored(8, 5, 6)), HasSubstr("95 %: few, but that may be chance"));
@@ -298,7 +297,7 @@ TEST(OneLine, NamesTheSensorAndCountsInTheSingular) {
   status.pending_inputs = 1;
   status.written = {{.topic = "advisory", .writer_id = "w", .sequence = 1}};
   EXPECT_THAT(one_line(status), HasSubstr("1 message written, 1 input waiting"));
-  EXPECT_THAT(scored_line(scored(1, 1, 1)), HasSubstr("of the last 1 forecast, "));
+  EXPECT_THAT(scored_line(scored(1, 1, 1)), HasSubstr("of the last 1 forecast (3 months ahead), "));
 }
 
 TEST(AssetView, HintsAtAcknowledgingOnlyWhereServicesRun) {
@@ -310,6 +309,7 @@ TEST(AssetView, HintsAtAcknowledgingOnlyWhereServicesRun) {
   view.take(Message(advisory));
   EXPECT_THAT(view.screen(), HasSubstr("(sealwatch acknowledge A recommendation/A-1 --by NAME)"));
   EXPECT_THAT(view.screen(false), Not(HasSubstr("acknowledge")));
+  EXPECT_EQ(view.call(), "INFORMATION, book vessel");
 }
 
 TEST(AssetView, KeepsTheActiveAdvisoryAndNamesWhatWasLeftOut) {

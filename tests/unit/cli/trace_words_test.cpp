@@ -43,8 +43,8 @@ TEST(TraceWords, BeginWithAChannelWhoseSignIsReversed) {
       "The sign of position is reversed. They differ beyond noise in position, pressure A. No gain, offset, delay "
       "or clock rate of a channel or of the input explains the rest.");
   comparison.channels.back().sign_reversed = true;
-  EXPECT_THAT(trace_summary(comparison), ::testing::StartsWith("The sign of position, pressure A is reversed, as where "
-                                                               "the input's is: check both"));
+  EXPECT_THAT(trace_summary(comparison), ::testing::StartsWith("The sign of position, pressure A is reversed, as if "
+                                                               "the input's were: check both"));
 }
 
 TEST(TraceWords, NameADeadChannelAndAllThatExplainsTheRest) {
@@ -52,10 +52,9 @@ TEST(TraceWords, NameADeadChannelAndAllThatExplainsTheRest) {
   comparison.consistent = false;
   comparison.channels = {channel_of("position", false, true)};
   comparison.channels.front().stands_still = true;
-  EXPECT_EQ(
-      trace_summary(comparison),
-      "They differ beyond noise in position. Recorded position does not move, while simulated it does: look at the "
-      "sensor and its cable.");
+  EXPECT_EQ(trace_summary(comparison),
+            "They differ beyond noise in position. Recorded position does not move, but simulated it does: check the "
+            "sensor and its cable.");
   comparison.channels.push_back(channel_of("pressure_a", false, true));
   comparison.answer = {{.id = "sensor_lag", .where = "sensor:pressure_a", .parameters = {}}};
   comparison.equally = {{.id = "input_delay", .where = "input", .parameters = {}}};

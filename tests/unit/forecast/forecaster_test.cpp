@@ -231,7 +231,7 @@ TEST(Panel, WindowsThatSeeDifferentRatesDisagree) {
   for (int n = 49; n <= 66; ++n) life.push_back({month(n), life[47].condition - 0.008 * (n - 48), 0.0005});
   const auto answer = panel->forecast({.history = life, .threshold = 0.60, .now = life.back().time}).value();
   EXPECT_TRUE(answer.windows_disagree);
-  EXPECT_THAT(answer.disagreement, HasSubstr("ageing has been faster of late: by its last 24 months"));
+  EXPECT_THAT(answer.disagreement, HasSubstr("ageing has become faster: the last 24 months of tests give"));
   const auto steady =
       panel->forecast({.history = straight_life(66, 0.004, 0.001), .threshold = 0.60, .now = month(66)}).value();
   EXPECT_FALSE(steady.windows_disagree);

@@ -19,6 +19,7 @@
 #include "services/common/runtime/large_blocks.hpp"
 #include "services/common/text/estimates.hpp"
 #include "services/common/text/format.hpp"
+#include "services/common/text/law_words.hpp"
 #include "services/common/text/numbers.hpp"
 #include "services/common/text/readable.hpp"
 #include "services/common/text/words.hpp"
@@ -142,17 +143,18 @@ std::string parameter_text(const FoundParameter& parameter) {
   return parameter.name + " = " + report::found_value(parameter);
 }
 
+std::string law_of(const mismatch::LawAt& law) {
+  return text::law_at(text::in_words(law.id), law.element, report::the_element(law.element), "of");
+}
+
 void print_effect(const FoundEffect& effect) {
-  std::printf("\n  %s of %s (%s)\n", text::in_words(effect.what.id).c_str(),
-              report::the_element(effect.what.element).c_str(), text::percent_text(effect.probability).c_str());
+  std::printf("\n  %s (%s)\n", law_of(effect.what).c_str(), text::percent_text(effect.probability).c_str());
   std::printf("    %s\n", wrapped(effect.what.law, kWidth, 4).c_str());
   for (const FoundParameter& parameter : effect.parameters) std::printf("    %s\n", parameter_text(parameter).c_str());
   if (!effect.regime.empty()) std::printf("    acts: %s\n", wrapped(effect.regime, kWidth, 4).c_str());
   std::string others;
   for (const mismatch::LawAt& other : effect.indistinguishable)
-    text::add_to_list(others, effect.is_another_form(other)
-                                  ? "another form of it (" + other.law + ")"
-                                  : text::in_words(other.id) + " of " + report::the_element(other.element));
+    text::add_to_list(others, effect.is_another_form(other) ? "another form of it (" + other.law + ")" : law_of(other));
   if (!others.empty()) std::printf("    %s\n", wrapped("indistinguishable from: " + others, kWidth, 4).c_str());
 }
 

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
+#include <utility>
 
 #include "sealwatch/model/plant_description.hpp"
 #include "services/common/text/estimates.hpp"
+#include "services/common/text/law_words.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -41,7 +43,7 @@ std::string separating_test(const FoundEffect& effect, bool is_stroke_test) {
 }  // namespace
 
 std::string law_in_words(const LawAt& law) {
-  return in_words(law.id).append(" at ").append(element_in_words(law.element));
+  return text::law_at(in_words(law.id), law.element, element_in_words(law.element), "at");
 }
 
 std::string left_in_words(const PooledFit& fit) {
@@ -150,13 +152,14 @@ std::string summary_of(const Explanation& explanation) {
     if (const std::string proof = proof_in_words(explanation.holdout); !proof.empty())
       text += (explanation.effects.size() > 1 ? " With them, " : " With it, ") + proof + "." +
               left_in_words(explanation.holdout);
+    std::string_view begin = " These recordings cannot distinguish ";
     for (const FoundEffect& effect : explanation.effects) {
       if (effect.indistinguishable.empty()) continue;
       std::vector<std::string> others;
       for (const LawAt& other : effect.indistinguishable)
         others.push_back(effect.is_another_form(other) ? "another form of it (" + other.law + ")"
                                                        : law_in_words(other));
-      text.append(" These recordings cannot distinguish ").append(law_in_words(effect.what));
+      text.append(std::exchange(begin, " Nor can they distinguish ")).append(law_in_words(effect.what));
       text.append(" from ").append(joined(others, " or ")).append(".");
     }
     return text;

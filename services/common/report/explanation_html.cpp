@@ -7,6 +7,7 @@
 #include "services/common/report/explanation_sections.hpp"
 #include "services/common/report/page.hpp"
 #include "services/common/text/estimates.hpp"
+#include "services/common/text/law_words.hpp"
 #include "services/common/text/readable.hpp"
 #include "services/common/text/words.hpp"
 
@@ -67,7 +68,7 @@ std::string step_for(const mismatch::FoundEffect& effect, const std::string& wor
     step += "It is either normal for this asset or a fault.";
   std::vector<std::string> others;
   for (const std::string& other : effect.same_elements) others.push_back(the_element(other));
-  if (!others.empty()) step += " These recordings fit equally well with it in: " + text::joined(others) + ".";
+  if (!others.empty()) step += " These recordings fit equally well with it at " + text::joined(others, " or ") + ".";
   return step;
 }
 
@@ -161,6 +162,10 @@ std::string element_name(const std::string& element) {
   if (element.starts_with(kInput)) return "recorded input " + text::in_words(element.substr(kInput.size()));
   return element.starts_with(kSensor) ? "sensor of " + text::in_words(element.substr(kSensor.size()))
                                       : text::in_words(element);
+}
+
+std::string law_of(const mismatch::LawAt& what) {
+  return text::law_at(law_name(what), what.element, the_element(what.element), "of");
 }
 
 std::string the_element(const std::string& element) {

@@ -10,6 +10,8 @@ namespace sealwatch::report {
 
 /// "piston, Stribeck friction", with the form where the law has several.
 [[nodiscard]] std::string law_name(const mismatch::LawAt& what);
+/// "external leakage (laminar) of chamber A"
+[[nodiscard]] std::string law_of(const mismatch::LawAt& what);
 
 /// "4.010 ± 0.060 kN", and that it ended at a bound or that the recordings do not tell it: "0.48 rpm, at its bound".
 [[nodiscard]] std::string found_value(const mismatch::FoundParameter& parameter);

@@ -153,7 +153,7 @@ std::string asset_values_section(const Explanation& explanation) {
   std::string beside;
   for (const mismatch::LawAt& law : explanation.beside_asset_values)
     if (!with_effects)
-      beside += paragraph("Fitted together with it: " + law_name(law) + " of " + the_element(law.element) +
+      beside += paragraph("Fitted together with it: " + law_of(law) +
                           ". Something is probably missing there; run explain again once the value is right.");
   return section(
       "A value in the asset file may be wrong",

@@ -60,9 +60,7 @@ std::string same_laws(const FoundEffect& effect) {
   html += "<ul>\n";
   for (const mismatch::LawAt& other : effect.indistinguishable)
     html.append("<li>")
-        .append(escaped(law_name(other)))
-        .append(" of ")
-        .append(escaped(the_element(other.element)))
+        .append(escaped(law_of(other)))
         .append(": <code>")
         .append(escaped(other.law))
         .append("</code></li>\n");
@@ -84,9 +82,9 @@ std::string size_words(double share) {
 
 /// "External leakage (laminar) of chamber A"
 std::string title_of(const FoundEffect& effect) {
-  std::string title = law_name(effect.what);
+  std::string title = law_of(effect.what);
   if (!title.empty()) title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
-  return title.append(" of ").append(the_element(effect.what.element));
+  return title;
 }
 
 /// The law, its figures and what it may be taken for, in a few lines.
@@ -99,8 +97,7 @@ std::string effect_in_short(const FoundEffect& effect) {
                         "; of this element: " + text::percent_text(effect.element_probability) + " (not calibrated).",
                     "small muted");
   std::string others;
-  for (const mismatch::LawAt& other : effect.indistinguishable)
-    text::add_to_list(others, law_name(other) + " of " + the_element(other.element), "; ");
+  for (const mismatch::LawAt& other : effect.indistinguishable) text::add_to_list(others, law_of(other), "; ");
   if (!others.empty()) html += paragraph("Cannot be distinguished from: " + others + ".", "small muted");
   return html;
 }

@@ -9,6 +9,7 @@
 #include "services/common/report/explanation_sections.hpp"
 #include "services/common/report/page.hpp"
 #include "services/common/report/plot.hpp"
+#include "services/common/text/law_words.hpp"
 #include "services/common/text/readable.hpp"
 
 namespace sealwatch::report {
@@ -28,7 +29,7 @@ constexpr double kMostlyOutside = 0.5;  ///< share of the points within the inte
 /// "Coulomb friction of the piston: missing force against +x", "External leakage of chamber A: missing flow"; the axes say in which unit.
 std::string title_of(const MissingTerm& term) {
   std::string title = element_name(term.element);
-  if (!term.what.id.empty()) title = law_name(term.what).append(" of ").append(the_element(term.element));
+  if (!term.what.id.empty()) title = text::law_at(law_name(term.what), term.element, the_element(term.element), "of");
   title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
   return title.append(": missing ").append(term.quantity);
 }

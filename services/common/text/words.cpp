@@ -1,9 +1,23 @@
 #include "services/common/text/words.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <utility>
 
 namespace sealwatch::text {
+namespace {
+
+/// Names of people, and compounds, that an identifier cannot spell.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kSpellings = {{{"coulomb", "Coulomb"},
+                                                                                      {"stribeck", "Stribeck"},
+                                                                                      {"dahl", "Dahl"},
+                                                                                      {"lugre", "LuGre"},
+                                                                                      {"froehlich", "Froehlich"},
+                                                                                      {" dependent", "-dependent"},
+                                                                                      {"warm up", "warm-up"}}};
+
+}  // namespace
 
 std::string in_words(std::string_view identifier) {
   if (identifier == "unlisted") return "unlisted physics";  // the id of what no law of the list describes
@@ -20,9 +34,8 @@ std::string in_words(std::string_view identifier) {
   }
   if (!symbol && (identifier.ends_with("_a") || identifier.ends_with("_b")))  // "pressure A", "chamber B"
     text.back() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.back())));
-  for (const std::string_view surname : {"coulomb", "stribeck"})
-    if (const std::size_t at = text.find(surname); at != std::string::npos)
-      text[at] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[at])));
+  for (const auto& [plain, written] : kSpellings)
+    if (const std::size_t at = text.find(plain); at != std::string::npos) text.replace(at, plain.size(), written);
   return text;
 }
 

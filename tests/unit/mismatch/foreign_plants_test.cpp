@@ -126,7 +126,7 @@ TEST(ForeignStage, AWrongMassIsNotTakenForASensorThatIsOff) {
   const auto mass = std::ranges::find_if(found.asset_values, is_mass);
   ASSERT_NE(mass, found.asset_values.end()) << found.summary;
   EXPECT_NEAR(mass->front().fitted, 0.525, 0.005);
-  EXPECT_NE(found.summary.find("sensor gain at the sensor of current"), std::string::npos) << found.summary;
+  EXPECT_NE(found.summary.find("sensor gain of current"), std::string::npos) << found.summary;
 }
 
 constexpr const char* kQuarterCar = R"yaml(name: quarter_car

@@ -24,11 +24,12 @@ TEST(Summary, NamesWhichLawCannotBeToldFromWhich) {
   found.effects = {load, friction};
   const std::string text = summary_of(found);
   EXPECT_NE(
-      text.find("cannot distinguish position dependent load at the piston from another form of it (k_q |x - x_q|)."),
+      text.find("cannot distinguish position-dependent load at the piston from another form of it (k_q |x - x_q|)."),
       std::string::npos)
       << text;
-  EXPECT_NE(text.find("cannot distinguish Coulomb friction at the piston from presliding friction at the piston."),
-            std::string::npos)
+  EXPECT_NE(
+      text.find("Nor can they distinguish Coulomb friction at the piston from presliding friction at the piston."),
+      std::string::npos)
       << text;
 }
 
@@ -49,13 +50,12 @@ TEST(Summary, SaysOfASensorThatTheRecordingsShowIt) {
   found.verdict = Verdict::mismatch;
   found.effects.resize(1);
   found.effects[0].what = {"sensor_gain", "", "sensor:pressure_a", "g y", ""};
-  EXPECT_EQ(summary_of(found).find("The recordings show sensor gain at the sensor of pressure A."), 0U)
-      << summary_of(found);
+  EXPECT_EQ(summary_of(found).find("The recordings show sensor gain of pressure A."), 0U) << summary_of(found);
   found.effects.resize(2);
   found.effects[1].what = {"coulomb_friction", "", "piston", "F_c tanh(v / v_s)", ""};
   EXPECT_EQ(
       summary_of(found).find("The simulation lacks Coulomb friction at the piston, and the recordings show sensor "
-                             "gain at the sensor of pressure A."),
+                             "gain of pressure A."),
       0U)
       << summary_of(found);
 }

@@ -136,7 +136,7 @@ TEST(Verdict, NeitherASensorNorAValueIsClaimedWhereBothDoTheSame) {
   EXPECT_TRUE(explanation->effects.empty()) << explanation->summary;
   ASSERT_FALSE(explanation->asset_values.empty()) << explanation->summary;
   EXPECT_EQ(explanation->asset_values.front().front().name, "T_M");
-  EXPECT_NE(explanation->summary.find("as well as sensor gain at the sensor of motor current"), std::string::npos)
+  EXPECT_NE(explanation->summary.find("as well as sensor gain of motor current"), std::string::npos)
       << explanation->summary;
 }
 

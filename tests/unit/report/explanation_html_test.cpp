@@ -229,7 +229,7 @@ TEST(ReportHtml, NamesTheLawOfAMissingTermAndSaysWhereItLeavesTheBand) {
   term.what = {"sensor_bias", "", "sensor:level_voltage", "channel + b", ""};
   term.element = "sensor:level_voltage";
   std::string html = explanation_to_html(explanation);
-  EXPECT_THAT(html, HasSubstr("Sensor bias of the sensor of level voltage: missing force against +x, recording fit_0"));
+  EXPECT_THAT(html, HasSubstr("Sensor bias of level voltage: missing force against +x, recording fit_0"));
   EXPECT_THAT(html, Not(HasSubstr("makes the interval too narrow")));
   for (double& value : term.law) value += 5000.0;
   html = explanation_to_html(explanation);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "services/common/text/law_words.hpp"
+
 namespace sealwatch::text {
 namespace {
 
@@ -13,6 +15,18 @@ TEST(Words, OfIdentifiers) {
   EXPECT_EQ(in_words("y_w"), "y_w");
   EXPECT_EQ(in_words("sensor:p_a"), "sensor: p_a");
   EXPECT_EQ(in_words(""), "");
+  EXPECT_EQ(in_words("pressure_dependent_friction"), "pressure-dependent friction");
+  EXPECT_EQ(in_words("viscosity_warm_up"), "viscosity warm-up");
+  EXPECT_EQ(in_words("lugre"), "LuGre");
+}
+
+TEST(Words, OfALawAtItsElement) {
+  EXPECT_EQ(law_at("Coulomb friction", "piston", "the piston", "at"), "Coulomb friction at the piston");
+  EXPECT_EQ(law_at("external leakage", "chamber_a", "chamber A", "of"), "external leakage of chamber A");
+  EXPECT_EQ(law_at("entrained air", "fluid", "the fluid", "at"), "entrained air in the fluid");
+  EXPECT_EQ(law_at("sensor bias", "sensor:pressure_a", "the sensor", "at"), "sensor bias of pressure A");
+  EXPECT_EQ(law_at("input bias", "input:u", "the input", "of"), "input bias of the recorded u");
+  EXPECT_EQ(law_at("clock rate", "clock", "the clock", "at"), "clock rate of the recording");
 }
 
 TEST(Words, OfLists) {

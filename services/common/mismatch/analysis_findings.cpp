@@ -114,7 +114,7 @@ void Analysis::take_out(std::size_t slot) {
 }
 
 Status Analysis::finish() {
-  tell("writing down what was found", 0.9);
+  tell("writing the report", 0.9);
   describe_what_was_found();
   take_values_beside();
   if (!best_.effects.empty()) static_cast<void>(time_.in_time("every alternative to the laws found"));

@@ -31,7 +31,7 @@ constexpr const char* kSensorsAgain = "what was found beside sensors within thei
 }  // namespace
 
 Status Analysis::look_for_what_is_missing() {
-  tell("looking for what is missing", 0.15);
+  tell("screening all laws", 0.15);
   if (windowed() || !take_averaged_inputs()) return look_from(std::nullopt);
   if (const Status looked = look_from(std::nullopt); !looked) return looked;
   if (!averages_do()) look_with_held_inputs();
@@ -105,13 +105,13 @@ Status Analysis::look_from(std::optional<Trial> from) {
   }
   if (own_) fit_.may_differ.clear();  // nothing else was found to differ beside it
   if (common) from = std::move(common);
-  if (own_) tell("looking again, with one value for all tests", 0.5);
+  if (own_) tell("searching again, with one value for all tests", 0.5);
   KnownOfBaseline known{std::move(*first)};
   const bool asks = !from && options.maximum_laws > 0 && excess(*baseline_) > kGross && !a_value_ends_it(known.first);
   if (asks) known.tried = laws_that_may_end_it(known.first);
   const auto ends_it = [](const Trial& trial) { return excess(*trial.model) <= kGross; };
   if (asks && std::ranges::none_of(known.tried, ends_it)) {
-    tell("setting out from the recorded states", 0.2);
+    tell("starting from the recorded states", 0.2);
     HeldStart held = start_from_held(*baseline_, prepared(fit_), options);
     if (held.trial && held.trial->effects.empty()) return look_beside_better(std::move(held.trial->model));
     from = std::move(held.trial);
@@ -215,7 +215,7 @@ Result<Naming> Analysis::look_in_common(const Trial& from, const ExplainOptions&
   // The search asked for a value in place of the sensors before it took them for inexact.
   const bool was_asked = again && naming->with_sensors && same_effects(naming->best.effects, again->best.effects);
   if (again && !was_asked && value_in_place_of_sensors(*again, data.sensors)) {
-    tell("looking again, with exact sensors", 0.6);
+    tell("searching again, with exact sensors", 0.6);
     again->trials.clear();
     data.sensors.clear();
     again = name_effects(baseline_, data, options, progress_);
@@ -307,7 +307,7 @@ Result<Naming> Analysis::beside_inexact_sensors(const Naming& found, const Expla
   const auto with_laws = laws.model == baseline_ ? with_sensors : fitted(*laws.model);
   if (!with_laws) return fail(with_laws.error());
   const Trial from{laws.effects, *with_laws};
-  tell("looking again, with sensors within their tolerances", 0.5);
+  tell("searching again, with sensors within their tolerances", 0.5);
   Result<Naming> beside = name_effects(*with_sensors, prepared(inexact), options, progress_, from);
   if (beside) keep_what_was_replaced(*beside, found);
   return beside;
@@ -386,7 +386,7 @@ Status Analysis::weigh_by_colour() {
   Result<FittedModel> model = fit_model(baseline_->asset, prepared(fit_), nullptr, options_.threads);
   if (!model) return fail(model.error());
   baseline_ = std::make_shared<const FittedModel>(std::move(*model));
-  tell("looking again, weighed by the colour of what is left", 0.5);
+  tell("searching again, with coloured residuals", 0.5);
   Data data = prepared(fit_);
   data.fixed.clear();
   Result<Naming> naming = name_effects(baseline_, data, options_, progress_);

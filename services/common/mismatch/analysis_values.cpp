@@ -37,7 +37,7 @@ void Analysis::ask_the_datasheet() {
   const std::size_t laws = best_.effects.size();
   const bool asks = laws > 0 || (result_.statistically_significant && excess(*baseline_) <= kGross);
   if (!asks) return;
-  tell("asking the values that the asset file fixes", 0.7);
+  tell("testing the values fixed in the asset file", 0.7);
   const Data data = prepared(fit_);
   const DatasheetQuestion question{asset_, *baseline_, best_, data, options_.threads};
   std::vector<std::string> instead_of;
@@ -171,7 +171,7 @@ bool Analysis::take_beside_values(const WrongDatasheet& wrong, const std::vector
   for (const AssetValue& value : wrong.values.front()) asset = with_free_value(std::move(asset), value.name);
   Result<FittedModel> alone = fit_baseline(asset, prepared(fit_), *wrong.with.model, options_.threads);
   if (!alone) return false;
-  tell("looking again, beside a value of the asset file", 0.7);
+  tell("searching again, beside a value of the asset file", 0.7);
   const ScreeningOptions screening{.seed = options_.seed, .threads = options_.threads};
   Result<Screening> first = screen(*alone, prepared(fit_), screening);
   if (!first) return false;

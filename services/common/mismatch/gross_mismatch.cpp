@@ -54,10 +54,10 @@ class GrossMismatch {
     if (!balances) return std::nullopt;
     const Result<FittedModel> as_it_is = simulated(asset_, fit_, options_.threads);
     if (as_it_is && rms_in_noise(*as_it_is, asset_, noise_fit_) < kGross) return std::nullopt;
-    tell("what each balance leaves over", 0.05);
+    tell("computing what each balance lacks", 0.05);
     found_ = search_balances(asset_, plant_, *balances, options_.maximum_laws, options_.threads);
     take_back_what_does_not_hold(*balances);
-    tell("simulating with it and without", 0.3);
+    tell("simulating with and without it", 0.3);
     if (!baseline_is_far_off()) return std::nullopt;
     simulate_with_findings();
     tell("proving on held-out recordings", 0.7);

@@ -78,7 +78,7 @@ TEST(TimeLimit, CalledOffInTheMiddleItEndsWithoutAnAnswer) {
   const auto found =
       explain(actuator(), two_tests(), {}, {.cancel = stop.get_token()}, [&](std::string_view step, double /*share*/) {
         steps_after += stop.stop_requested() ? 1 : 0;
-        if (step == "looking for what is missing") stop.request_stop();
+        if (step == "screening all laws") stop.request_stop();
       });
   ASSERT_FALSE(found);
   EXPECT_THAT(found.error().describe(), HasSubstr("called off"));

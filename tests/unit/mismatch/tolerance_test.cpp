@@ -167,7 +167,7 @@ TEST(Tolerance, ASensorThatIsFarOffIsAskedBeforeSimulationsAreHeldToIt) {
   ASSERT_EQ(found->effects.size(), 1U) << found->summary;
   EXPECT_EQ(found->effects[0].what.id, "sensor_bias");
   EXPECT_EQ(found->effects[0].what.element, "sensor:shaft_speed");
-  EXPECT_FALSE(steps.contains("setting out from the recorded states"));
+  EXPECT_FALSE(steps.contains("starting from the recorded states"));
 }
 
 AssetConfig drifting(double towards, double time_s) {

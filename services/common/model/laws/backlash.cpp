@@ -22,7 +22,7 @@ Law backlash() {
       .form = "",
       .kind = SiteKind::piston_force,
       .equation = "-F_b (1 - s^4), s = 1 - 2 g, b dg/dt = abs(v) s^5 - v",
-      .meaning = "clearance between stem and load: the load is missing while it is crossed after a reversal",
+      .meaning = "clearance between stem and load: after a reversal the load is absent until it is crossed",
       .energy = "F_b between 0 and the load: what is missing is never more than the load",
       .source = "Nordin, Gutman, Automatica 38 (2002) 1633, here smooth",
       .parameters = {strength("F_b", "N", "load that is missing in the clearance",

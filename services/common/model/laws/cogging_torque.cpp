@@ -17,7 +17,7 @@ Law cogging_torque() {
       .energy = "none: over a turn it takes and returns the same work",
       .source = "Zhu, Howe, IEEE Trans. Energy Conversion 15 (2000) 407",
       .parameters = {strength("A", "N m", "amplitude", {.usual = 0.02, .significant = 5e-3, .max = 2.0}),
-                     shape("N", "1", "periods in a turn: a whole number", {6.0, 12.0, 4.0, 8.0, 10.0, 18.0, 24.0, 36.0},
+                     shape("N", "1", "periods per turn, a whole number", {6.0, 12.0, 4.0, 8.0, 10.0, 18.0, 24.0, 36.0},
                            1.0, 120.0)},
       .hidden =
           HiddenState{.name = "shaft_angle", .unit = "rad", .scale = 1.0, .free_initial = true, .shaft_angle = true},

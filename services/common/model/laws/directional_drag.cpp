@@ -15,10 +15,10 @@ Law directional_drag() {
       .kind = SiteKind::piston_force,
       .equation = "c_d abs(v)",
       .meaning = "viscous friction that differs between the two directions of motion",
-      .energy = "none: it takes towards one side what it returns towards the other at the same speed",
+      .energy = "none: what it takes in one direction it returns in the other at the same speed",
       .source =
           "Olsson et al., Friction models and friction compensation (1998), section 2: friction differs by direction",
-      .parameters = {strength("c_d", "N s/m", "half the difference of the drag, that towards +x the larger",
+      .parameters = {strength("c_d", "N s/m", "half the difference of the drag; positive if larger towards +x",
                               {.usual = 1e6, .significant = 4e5, .max = 1e8, .either_sign = true})},
       .evaluate = &evaluate_directional_drag,
       .roundings = {{"m/s", kStandstill_m_s}}};

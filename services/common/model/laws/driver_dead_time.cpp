@@ -12,7 +12,7 @@ Law driver_dead_time() {
           .form = "voltage_loss",
           .kind = SiteKind::voltage_command,
           .equation = "V_d tanh(i / i_s)",
-          .meaning = "voltage lost to the dead time of the bridge: of constant size, in the direction of the current",
+          .meaning = "voltage lost to the bridge's dead time: a constant voltage in the direction of the current",
           .energy = "V_d >= 0: power V i is lost, never won",
           .source = "Jeong, Park, IEEE Trans. Industrial Electronics 38 (1991) 108",
           .parameters = {strength("V_d", "V", "voltage lost", {.usual = 1.0, .significant = 0.3, .max = 20.0}),

@@ -12,7 +12,7 @@ Law external_leakage_power() {
           .form = "power",
           .kind = SiteKind::outflow,
           .equation = "q_o sgn(p - p_0) abs((p - p_0) / 10 MPa)^a_o",
-          .meaning = "oil that leaves the chamber by a power of its pressure",
+          .meaning = "oil that leaves the chamber, as a power of its pressure",
           .energy = "q_o >= 0: oil leaks from the higher pressure to the lower",
           .source = kClosedFormSource,
           .closed_form = true,

@@ -10,7 +10,7 @@ Law hose_compliance() {
           .form = "constant",
           .kind = SiteKind::compliance,
           .equation = "C_h",
-          .meaning = "a hose or a wall that widens with pressure and takes oil in",
+          .meaning = "a hose or a wall that widens with pressure and takes up oil",
           .energy = "C_h >= 0: it widens with pressure",
           .source = "Merritt, Hydraulic Control Systems (1967), section 2: elasticity of containers",
           .parameters = {strength("C_h", "m3/Pa", "volume per pressure",

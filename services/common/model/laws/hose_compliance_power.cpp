@@ -14,7 +14,7 @@ Law hose_compliance_power() {
           .form = "power",
           .kind = SiteKind::compliance,
           .equation = "C_p (p / 10 MPa)^-b_h",
-          .meaning = "a volume that gives way by a power of pressure",
+          .meaning = "a compliance that changes as a power of pressure",
           .energy = "C_p >= 0: it widens with pressure",
           .source = kClosedFormSource,
           .closed_form = true,

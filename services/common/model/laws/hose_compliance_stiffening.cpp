@@ -13,7 +13,7 @@ Law hose_compliance_stiffening() {
           .form = "stiffening",
           .kind = SiteKind::compliance,
           .equation = "C_s / (1 + p / p_h)",
-          .meaning = "a braided hose: it widens easily at first and ever less as its braid tightens",
+          .meaning = "a braided hose: it widens easily at first, then less and less as its braid tightens",
           .energy = "C_s >= 0: it widens with pressure",
           .source = "McCloy, Martin, Control of Fluid Power (1980): volumetric expansion of hoses",
           .parameters = {strength("C_s", "m3/Pa", "volume per pressure without pressure",

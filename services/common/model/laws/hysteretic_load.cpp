@@ -19,11 +19,11 @@ Law hysteretic_load() {
       .form = "",
       .kind = SiteKind::piston_force,
       .equation = "F_h zeta, x_y dzeta/dt = v - (abs(v) zeta + v abs(zeta)) / 2",
-      .meaning = "load that depends on the way it was reached: packing or gate that gives way over millimetres",
+      .meaning = "load that depends on how the position was reached: packing or a gate that yields over millimetres",
       .energy = "F_h >= 0: a closed path always costs work",
       .source = "Wen, Journal of the Engineering Mechanics Division ASCE 102 (1976) 249",
       .parameters = {strength("F_h", "N", "load once it has yielded", {.usual = 1e3, .significant = 600.0, .max = 1e5}),
-                     shape("x_y", "m", "way over which it yields", {2e-3, 5e-4, 6e-3}, 1e-4, 5e-2)},
+                     shape("x_y", "m", "distance over which it yields", {2e-3, 5e-4, 6e-3}, 1e-4, 5e-2)},
       .hidden =
           HiddenState{.name = "memory", .unit = "1", .scale = 1.0, .free_initial = true, .least = -1.0, .most = 1.0},
       .evaluate = &evaluate_hysteretic_load,

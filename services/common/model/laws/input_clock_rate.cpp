@@ -8,8 +8,7 @@ Law input_clock_rate() {
           .form = "",
           .kind = SiteKind::input_clock_rate,
           .equation = "u(t (1 + r))",
-          .meaning =
-              "the clock that stamped what drives the plant is fast (r > 0) or slow against that of the measurements",
+          .meaning = "the clock of the recorded input is fast (r > 0) or slow against that of the measurements",
           .energy = "r > -1: time does not turn",
           .source = "ITU-T G.810 (1996), fractional frequency deviation",
           .parameters = {strength("r", "1", "relative rate",

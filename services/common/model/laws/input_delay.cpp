@@ -8,7 +8,7 @@ Law input_delay() {
           .form = "",
           .kind = SiteKind::input_delay,
           .equation = "u(t - tau)",
-          .meaning = "what drives the plant acts later (tau > 0) or earlier than the record says",
+          .meaning = "the input acts later (tau > 0) or earlier than its recording says",
           .energy = "none: a record may be early or late",
           .source = "Ljung, System Identification, 2nd ed., 1999 (dead time n_k)",
           .parameters = {

@@ -8,7 +8,7 @@ Law input_gain() {
           .form = "",
           .kind = SiteKind::input_gain,
           .equation = "(1 + g) u",
-          .meaning = "what drives the plant is larger or smaller than what was recorded of it",
+          .meaning = "the input that drives the plant is larger or smaller than its recording",
           .energy = "g > -1: its direction stays",
           .source = "JCGM 200:2012, 4.12",
           .parameters = {strength("g", "1", "relative change",

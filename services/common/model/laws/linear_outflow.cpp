@@ -12,7 +12,7 @@ Law linear_outflow() {
           .form = "",
           .kind = SiteKind::tank_flow,
           .equation = "k level",
-          .meaning = "outflow of this tank that is laminar, as through a long thin hose",
+          .meaning = "laminar outflow of this tank, as through a long thin hose",
           .energy = "k >= 0: water leaves",
           .source = "Hagen-Poiseuille",
           .parameters = {strength("k", "1/s", "outflow per level", {.usual = 5e-3, .significant = 1e-3, .max = 1.0})},

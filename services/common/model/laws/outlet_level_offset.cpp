@@ -13,7 +13,7 @@ Law outlet_level_offset() {
           .form = "",
           .kind = SiteKind::tank_flow,
           .equation = "k (sqrt(level + h) - sqrt(level))",
-          .meaning = "the outlet lies below the level's zero by h: water still leaves where the level reads nought",
+          .meaning = "the outlet lies below zero level by h: water still leaves at a level of zero",
           .energy = "k >= 0: water leaves",
           .source = "Torricelli's law",
           .parameters = {strength("k", "V^0.5/s", "coefficient of the outlet",

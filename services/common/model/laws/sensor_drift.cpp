@@ -11,9 +11,9 @@ Law sensor_drift() {
           .meaning = "the sensor's zero moves during the recording: it warms up, or creeps",
           .energy = "none: a sensor takes no part in the physics",
           .source = "JCGM 200:2012, 4.21: instrumental drift",
-          .parameters = {
-              strength("D", "channel", "where the zero goes to", {.usual = 1e-6, .max = 1e9, .either_sign = true}),
-              shape("T", "s", "time in which it goes most of the way", {5.0, 50.0}, 0.5, 1e4)}};
+          .parameters = {strength("D", "channel", "shift of the zero in the end",
+                                  {.usual = 1e-6, .max = 1e9, .either_sign = true}),
+                         shape("T", "s", "time in which it drifts most of the way", {5.0, 50.0}, 0.5, 1e4)}};
 }
 
 }  // namespace sealwatch::laws

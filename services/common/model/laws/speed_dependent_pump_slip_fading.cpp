@@ -13,7 +13,7 @@ Law speed_dependent_pump_slip_fading() {
           .form = "fading",
           .kind = SiteKind::pump_slip,
           .equation = "k_0 (p_1 - p_2) / (1 + abs(omega / omega_k)^m)",
-          .meaning = "leakage of the pump that is larger when it turns slowly, by any power of its speed",
+          .meaning = "leakage of the pump that is larger when it turns slowly, by some power of its speed",
           .energy = "k_0 >= 0: oil leaks from the higher pressure to the lower",
           .source = kClosedFormSource,
           .closed_form = true,

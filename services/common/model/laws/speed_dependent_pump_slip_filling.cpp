@@ -13,7 +13,7 @@ Law speed_dependent_pump_slip_filling() {
           .form = "filling",
           .kind = SiteKind::pump_slip,
           .equation = "k_f omega abs(omega)",
-          .meaning = "the faster the pump turns, the less its chambers fill through their inlet",
+          .meaning = "the faster the pump turns, the less its chambers fill",
           .energy = "0 <= k_f abs(omega) <= alpha_P: the pump delivers no more than it sweeps",
           .source = "Ivantysyn, Ivantysynova, Hydrostatic Pumps and Motors (2001): square term of the loss polynomial",
           .parameters = {strength("k_f", "m3 s/rad2", "displacement lost per speed",

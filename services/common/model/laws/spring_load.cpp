@@ -12,7 +12,7 @@ Law spring_load() {
           .form = "",
           .kind = SiteKind::piston_force,
           .equation = "k x",
-          .meaning = "a spring that pushes towards x = 0, as the fail-safe spring of a valve",
+          .meaning = "a spring that pushes towards x = 0, such as the fail-safe spring of a valve",
           .energy = "k >= 0: it stores what it takes; its preload is part of the load",
           .source = "Hooke's law",
           .parameters = {strength("k", "N/m", "stiffness", {.usual = 5e4, .significant = 3e4, .max = 1e8})},

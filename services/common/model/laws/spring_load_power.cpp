@@ -12,7 +12,7 @@ Law spring_load_power() {
           .form = "power",
           .kind = SiteKind::piston_force,
           .equation = "F_x sgn(x) abs(x / 50 mm)^a_x",
-          .meaning = "a spring that grows harder or softer with its way: 3 is Duffing's cubic spring",
+          .meaning = "a spring that stiffens or softens with its deflection: exponent 3 is Duffing's cubic spring",
           .energy = "none: a function of position alone takes and returns the same work",
           .source = kClosedFormSource,
           .closed_form = true,

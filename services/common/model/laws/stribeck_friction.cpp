@@ -19,7 +19,7 @@ Law stribeck_friction() {
       .energy = "F_c >= 0, F_x >= 0: it always opposes the motion",
       .source = "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
       .parameters = {strength("F_c", "N", "friction force in motion", {.usual = 1e3, .significant = 600.0, .max = 1e5}),
-                     strength("F_x", "N", "what breakaway takes beyond it",
+                     strength("F_x", "N", "further force for breakaway",
                               {.usual = 1e3, .significant = 600.0, .max = 1e5}),
                      shape("v_st", "m/s", "speed at which the film forms", {5e-4, 1e-4, 2e-3}, 2e-5, 5e-2),
                      reversal_speed()},

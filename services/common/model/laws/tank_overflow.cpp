@@ -13,7 +13,7 @@ Law tank_overflow() {
           .form = "",
           .kind = SiteKind::tank_flow,
           .equation = "k max(level - level_max, 0)",
-          .meaning = "water that runs over the rim: of a tank, and is lost, or into the tank below",
+          .meaning = "water that runs over the rim, and is lost or falls into the tank below",
           .energy = "k >= 0: water only leaves over the rim",
           .source = "Schoukens, Mattsson, Wigren, Noel, Cascaded tanks benchmark (2016)",
           .parameters = {strength("k", "1/s", "overflow per level above the rim",

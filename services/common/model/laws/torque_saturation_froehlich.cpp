@@ -14,7 +14,7 @@ Law torque_saturation_froehlich() {
           .form = "froehlich",
           .kind = SiteKind::shaft_torque,
           .equation = "k_f i abs(i) / (i_f + abs(i))",
-          .meaning = "the iron saturates gradually, already from small currents on",
+          .meaning = "the iron saturates gradually, even at small currents",
           .energy = "0 <= k_f <= T_M: the torque never falls with current",
           .source = "Froehlich's magnetisation curve, in Bozorth, Ferromagnetism (1951)",
           .parameters = {strength("k_f", "N m/A", "torque constant that saturates",

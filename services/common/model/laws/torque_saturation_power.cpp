@@ -12,7 +12,7 @@ Law torque_saturation_power() {
           .form = "power",
           .kind = SiteKind::shaft_torque,
           .equation = "T_i sgn(i) abs(i / 1 A)^n",
-          .meaning = "the iron saturates by any power of the current",
+          .meaning = "the iron saturates by some power of the current",
           .energy = "T_i >= 0, below T_M i: the torque keeps the current's sign",
           .source = kClosedFormSource,
           .closed_form = true,

@@ -12,7 +12,7 @@ Law turbulent_seal_leakage() {
           .form = "",
           .kind = SiteKind::seal_leakage,
           .equation = "k sgn(p_A - p_B) sqrt(abs(p_A - p_B))",
-          .meaning = "leakage past the piston through a nick or a lip that has lifted: turbulent, unlike a gap's",
+          .meaning = "leakage past the piston through a nick or a lifted lip: turbulent, unlike that of a gap",
           .energy = "k >= 0: oil leaks from the higher pressure to the lower",
           .source = "Merritt, Hydraulic Control Systems (1967), section 3: orifice flow",
           .parameters = {strength("k", "m3/(s Pa^0.5)", "flow per root of pressure",

@@ -13,7 +13,7 @@ Law unlisted_command_power() {
           .form = "command_power",
           .kind = SiteKind::voltage_command,
           .equation = "g_u u abs(u / 10 V)^a_u",
-          .meaning = "driver whose voltage does not follow the command in proportion",
+          .meaning = "driver whose voltage is not proportional to its command",
           .energy = "0 <= g_u abs(u / 10 V)^a_u <= 1: what arrives is no larger than the command",
           .source = kClosedFormSource,
           .closed_form = true,

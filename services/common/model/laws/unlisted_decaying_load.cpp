@@ -19,7 +19,7 @@ Law unlisted_decaying_load() {
           .closed_form = true,
           .parameters = {strength("F_e", "N", "load at the end of the stroke",
                                   {.usual = 2e4, .significant = 6e3, .max = 1e6, .either_sign = true}),
-                         shape("x_e", "m", "way over which it decays", {0.02, 5e-3}, 2e-3, 0.2)},
+                         shape("x_e", "m", "distance over which it decays", {0.02, 5e-3}, 2e-3, 0.2)},
           .evaluate = &evaluate_unlisted_decaying_load,
           .roundings = {{"m", 1e-3}}};
 }

@@ -14,7 +14,7 @@ Law unlisted_resistance_power() {
       .form = "resistance_power",
       .kind = SiteKind::winding_voltage,
       .equation = "R_i i abs(i / 1 A)^a_i",
-      .meaning = "voltage drop of the winding that does not follow the current in proportion: contacts, brushes",
+      .meaning = "voltage drop of the winding that is not proportional to the current: contacts, brushes",
       .energy = "R_i >= 0: power V i is lost, never won",
       .source = kClosedFormSource,
       .closed_form = true,

@@ -19,7 +19,7 @@ Law valve_hysteresis() {
           .form = "open_memory",
           .kind = SiteKind::valve_crack,
           .equation = "dp_h h, tau dh/dt = (1 + tanh(2 D / D_o - 2)) / 2 - h",
-          .meaning = "the check valve, once open, closes at a lower pressure than it opened at: flow holds its poppet",
+          .meaning = "the check valve closes at a lower pressure than it opens at: the flow holds its poppet",
           .energy = "dp_h between 0 and the cracking pressure: the closed valve stays closed without a drop",
           .source = "Johnston, Edge, Vaughan, Proc. IMechE 205A (1991) 161: flow force on poppets",
           .parameters = {strength("dp_h", "Pa", "cracking pressure lost once open",

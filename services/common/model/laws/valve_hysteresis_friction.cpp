@@ -15,12 +15,12 @@ Law valve_hysteresis_friction() {
           .form = "poppet_friction",
           .kind = SiteKind::valve_crack,
           .equation = "dp_f tanh((D_f - D) / 5 kPa), tau_f dD_f/dt = D - D_f",
-          .meaning = "a poppet that sticks: it opens at more and closes at less than its cracking pressure",
+          .meaning = "a sticking poppet: it opens above and closes below its cracking pressure",
           .energy = "dp_f between 0 and the cracking pressure: friction opposes the poppet's motion",
           .source = "Merritt, Hydraulic Control Systems (1967), section 9: relief valves with friction",
           .parameters = {strength("dp_f", "Pa", "pressure that moves the poppet against friction",
                                   {.usual = 2e4, .significant = 5e3, .max = 5e4}),
-                         shape("tau_f", "s", "time in which a change is forgotten", {0.1, 0.02, 0.5}, 5e-3, 10.0)},
+                         shape("tau_f", "s", "time constant of its memory", {0.1, 0.02, 0.5}, 5e-3, 10.0)},
           .hidden = HiddenState{.name = "lagged_drop", .unit = "Pa", .scale = 5e4, .settled = true},
           .evaluate = &evaluate_valve_hysteresis_friction};
 }

@@ -84,7 +84,7 @@ std::string partial_stroke(const Recording& recording) {
 
 std::string valve_signature(const Recording& recording) {
   const signal::TestRecord test = record_of(recording);
-  Plot plot{.title = "load pressure over position: the gap between out and back is friction",
+  Plot plot{.title = "load pressure over position (the gap between out and back is friction)",
             .x = {.label = "position", .unit = "m"},
             .y = {.unit = "Pa"},
             .width = kWide,
@@ -130,15 +130,15 @@ std::string concealed_effect(const Recording& plain, const Recording& hidden) {
   Canvas canvas("An effect that the position loop conceals", 2 * kHalf, kHeight);
   double x = 0.0;
   const auto add = [&](Plot plot, const std::vector<double>& without, const std::vector<double>& with) {
-    plot.marks.emplace_back(
-        Line{.x = plain.samples.time_s, .y = without, .ink = Ink::muted, .label = "without friction", .width = 3.0});
+    plot.marks.emplace_back(Line{
+        .x = plain.samples.time_s, .y = without, .ink = Ink::muted, .label = "without dry friction", .width = 3.0});
     plot.marks.emplace_back(line_of(hidden.samples, with, Ink::second, "with 4 kN of dry friction"));
     canvas.place(report::to_svg(plot), x, 0.0);
     x += kHalf;
   };
-  add(over_time("position: the loop hides it", "m", kHalf, kHeight), plain.samples.find("position")->values,
+  add(over_time("position (the loop hides the friction)", "m", kHalf, kHeight), plain.samples.find("position")->values,
       hidden.samples.find("position")->values);
-  add(over_time("load pressure: it shows", "Pa", kHalf, kHeight), record_of(plain).smooth_load_pressure(),
+  add(over_time("load pressure (it shows the friction)", "Pa", kHalf, kHeight), record_of(plain).smooth_load_pressure(),
       record_of(hidden).smooth_load_pressure());
   return canvas.svg();
 }

@@ -71,6 +71,8 @@ done
 phrases=(
   'in charge=primary forecaster' 'hollow=local minimum' 'are told=reported misfit' 'is told like=…'
   'elastic modulus when new=leakage-derived condition index' 'nobody knows when=…' 'costs the law=…'
+  'with 80 % between=80 %: ... to ...' 'of late: =ageing has become' 'pretends one=looks like one' 'came true=held'
+  'what came out=outputs' 'nothing that was tried=no alteration that was tried' 'lives more=more'
   'kept aside=held out' 'only teach=…' 'Master Control Station=Master Control System')
 for pair in "${phrases[@]}"; do
   old=${pair%%=*}

@@ -27,6 +27,7 @@ constexpr const char* kRecords = "sets.jsonl";
 struct PlannedSet {
   TrialStratum stratum;
   std::uint64_t seed;
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 takes the zero of a comparison for a pointer
   friend auto operator<=>(const PlannedSet&, const PlannedSet&) = default;
 };
 
@@ -93,7 +94,8 @@ class Campaign {
         progress_("verify mismatch", missing_.size(), "sets") {}
 
   bool run() {
-    const int threads = options_.threads > 0 ? options_.threads : std::max(1U, std::thread::hardware_concurrency());
+    const int threads =
+        options_.threads > 0 ? options_.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     std::vector<std::jthread> workers;
     for (int k = 0; k < threads; ++k) workers.emplace_back([this] { work(); });
     workers.clear();

@@ -148,7 +148,8 @@ ScenarioRun run_scenario(const VerifyRulOptions& options, const AssetConfig& ass
   if (!store) return bad(store.error());
 
   const std::vector<std::uint32_t> own = verification::lives_of(*shard, options.lives);
-  const int threads = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+  const int threads =
+      options.threads > 0 ? options.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const double processor_seconds_before = cpu_seconds(usage_so_far());  // of the scenarios before
   const auto begin = std::chrono::steady_clock::now();
   const auto elapsed = [begin] {

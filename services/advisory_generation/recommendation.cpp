@@ -145,8 +145,8 @@ std::vector<Recommendation> calls(const Context& c) {
          "Plan to replace the actuator: its measurements are in alarm, most likely " + a.alarm_reason + ".");
   if (a.alarm_reason.empty() && !a.model_alarm.empty())
     call(AdvisoryPriority::medium, AdvisoryAction::examine_actuator,
-         "Have the actuator examined: it does not behave as its model says or as it did in its first tests, in " +
-             a.model_alarm + ". What was found stands under 'model' in the status, or let sealwatch explain look.");
+         "Have the actuator examined: it departs from its model, or from its first tests, in " + a.model_alarm +
+             ". The status shows under 'model' what was found; if nothing, run sealwatch explain.");
   if (c.in_force.instruments_doubted)
     call(c.in_force.failing ? AdvisoryPriority::high : AdvisoryPriority::medium,
          AdvisoryAction::inspect_instrumentation,

@@ -84,7 +84,7 @@ void print_text(const ForecastQuestion& question, const forecast::ForecastPanel:
   if (!question.request.horizons.empty() && !tells_probability(answer.forecasts.front()))
     std::printf("  P(failure)       unknown without a forecast\n");
   if (question.without_error > 0)
-    std::printf("standard errors: not known of %zu of %zu tests; how the tests scatter stands for them\n",
+    std::printf("standard errors: unknown for %zu of %zu tests; the scatter of the tests replaces them\n",
                 question.without_error, question.request.history.size());
   for (const ConditionSample& sample : question.vague)
     std::printf("left out as too vague: %s, theta %s ± %s\n", format_date(sample.time).c_str(),

@@ -243,7 +243,7 @@ std::string reasons_part(const ForecastQuestion& question, const ForecastPanel::
     list += "<li>" + in_lines(method_label(primary) + " is the primary forecaster: " + primary.explanation);
   if (answer.windows_disagree) list.append("<li>Windows disagree: ").append(in_lines(answer.disagreement));
   if (question.without_error > 0)
-    list.append("<li>Standard errors are not known of " + std::to_string(question.without_error) + " of " +
+    list.append("<li>Standard errors are unknown for " + std::to_string(question.without_error) + " of " +
                 std::to_string(question.request.history.size()) + " tests; the scatter of the tests replaces them.");
   list_samples(question.vague, "left out as too vague", list);
   list_samples(answer.left_out, "left out as an isolated outlier", list);

@@ -162,7 +162,7 @@ TEST_F(Commands, ForecastSaysWhichTestsItDoesNotBelieveOrKnowTheErrorOf) {
   EXPECT_EQ(json::parse(vague.output)["tests_without_standard_error"], 0);
   const Finished without = run({"sealwatch", "forecast", "--history", write("without.csv", unknown)});
   ASSERT_EQ(without.status, 0) << without.output;
-  EXPECT_THAT(without.output, HasSubstr("standard errors: not known of 30 of 30 tests"));
+  EXPECT_THAT(without.output, HasSubstr("standard errors: unknown for 30 of 30 tests"));
 }
 
 TEST_F(Commands, ForecastRefusesAHistoryThatIsNoneWithRowAndColumn) {

@@ -106,7 +106,7 @@ std::string describe_ok(const Forecast& forecast, const SealOpinion& opinion, co
   text += text::condition_with_std(now.condition, now.condition_std);
   const ConditionSample& last = request.history.back();
   text += last.time < request.now     ? " (carried on from then)"
-          : last.condition_std == 0.0 ? " (by how the tests scatter)"
+          : last.condition_std == 0.0 ? " (from the scatter of the tests)"
                                       : " (by sensor noise alone)";
   double stranger = 0.0;
   for (const SealHypothesis& hypothesis : opinion.hypotheses)

@@ -43,7 +43,8 @@ Result<Explanation> Analysis::analyse() {
     return tell_no_law(ever ? cannot_be_asked(*ever) : time_was_up(options_.time_limit_s));
   }
   if (at_rest(*baseline_, prepared(fit_))) why_none_ = nothing_moves();
-  if (const auto part = driven_unseen(); part && !why_none_) why_none_ = drives_unseen(*part);
+  if (const auto part = driven_unseen(); part && !why_none_ && result_.statistically_significant)
+    why_none_ = drives_unseen(*part);
   if (!why_none_ && time_.in_time("whether something changed between the tests")) look_for_a_change();
   if (!why_none_ && own_ && !own_->goes_its_way) say_what_differs();
   if (!why_none_) take_values_found();
@@ -112,7 +113,7 @@ void Analysis::tell(std::string_view step, double share) const {
 
 std::optional<PlantPart> Analysis::driven_unseen() const {
   PlantPart part = simulated_part(asset_, fit_.samples.front());
-  // What is left where the samples count is little, and the flow's own errors add up to as much.
+  // Little is left where the samples count, and errors of the measured input add up to as much.
   const bool may_be_all = part.unseen_at_reversal_s > 0.0 || excess(*baseline_) > kGross;
   if (part.not_recorded.empty() || !may_be_all) return std::nullopt;
   return part;

@@ -235,7 +235,7 @@ TEST(Tolerance, OfADifferencePressureAloneTheLeakageIsToldAndNoPhysics) {
   const auto leakage = std::ranges::find(found->parameters, "R_CL", &ParameterShift::name);
   ASSERT_NE(leakage, found->parameters.end());
   const double truth = asset.parameters.at("R_CL").value;
-  EXPECT_NEAR(leakage->before, truth, 0.03 * truth);
+  EXPECT_NEAR(leakage->before, truth, 0.01 * truth);
 }
 
 }  // namespace

@@ -61,7 +61,8 @@ TEST(Simulation, StartsAtRestWhereWhatSettlesSwings) {
   }
 }
 
-/// With a constant pressure in chamber B, x was 0.1 mm off from where the piston turned back.
+/// With a constant pressure in chamber B, x was 0.1 mm off from where the piston turned back, and 11 to 18 um where oil
+/// that filled a port came from nowhere.
 TEST(Simulation, ByTheFlowAloneFollowsThePressureOfTheOtherChamber) {
   const AssetConfig asset = nominal_asset("eha");
   const TimeSeries driven = standard_pst(asset);
@@ -85,7 +86,7 @@ TEST(Simulation, ByTheFlowAloneFollowsThePressureOfTheOtherChamber) {
   const Eigen::VectorXd position = outputs.values.col(column(*part, "position"));
   const Eigen::VectorXd off = position - truth.values.col(column(*whole, "position"));
   EXPECT_LT(off.segment(400, 2000).cwiseAbs().maxCoeff(), 20e-6) << "on the way, from a second after it set out";
-  EXPECT_LT(off.tail(400).cwiseAbs().maxCoeff(), 20e-6);
+  EXPECT_LT(off.tail(400).cwiseAbs().maxCoeff(), 4e-6);
 }
 
 TEST(Simulation, TakesTheInputAsHeldWhenTheRecordingSaysSo) {

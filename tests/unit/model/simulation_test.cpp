@@ -61,7 +61,7 @@ TEST(Simulation, StartsAtRestWhereWhatSettlesSwings) {
   }
 }
 
-/// With a constant pressure in chamber B, x was 0.1 mm off from where the piston turned back, and 11 to 18 um where oil
+/// With a constant pressure in chamber B, x was 0.1 mm off from where the piston turned back, and 18 um where oil
 /// that filled a port came from nowhere.
 TEST(Simulation, ByTheFlowAloneFollowsThePressureOfTheOtherChamber) {
   const AssetConfig asset = nominal_asset("eha");

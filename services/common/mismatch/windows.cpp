@@ -111,7 +111,7 @@ InputNoise input_noise(const FittedModel& model, const Data& windows, const Nois
     for (Eigen::Index c = 0; c < difference.cols(); ++c) {
       auto& [sum, count] = sums[part.simulation->channels()[static_cast<std::size_t>(c)]];
       add_products(difference.col(c), sum);
-      count += static_cast<double>((difference.col(c).array() != 0.0).count());
+      count += static_cast<double>(std::ranges::count_if(weights_of(part, c), [](double w) { return w > 0.0; }));
     }
   }
   InputNoise noise;

@@ -238,5 +238,20 @@ TEST(Tolerance, OfADifferencePressureAloneTheLeakageIsToldAndNoPhysics) {
   EXPECT_NEAR(leakage->before, truth, 0.01 * truth);
 }
 
+// The load on the rod is constant in the model: the noise of what drives it makes nothing there.
+TEST(Tolerance, AChannelThatNoInputMovesKeepsItsOwnNoise) {
+  const AssetConfig asset = actuator();
+  std::vector<Recording> tests = tests_of(asset);
+  for (Recording& test : tests) {
+    const std::size_t rows = test.samples.time_s.size();
+    std::vector<double> force(rows, asset.parameters.at("phi").value);
+    for (std::size_t row = 0; row < rows; ++row) force[row] += row % 2 == 0 ? 100.0 : -100.0;
+    test.samples.channels.push_back({"rod_force", "N", 100.0, std::move(force)});
+    leave_out(test.samples, {"motor_voltage", "motor_current", "shaft_speed"});
+  }
+  const auto found = explain(asset, tests, {}, {.time_limit_s = 10.0});
+  ASSERT_TRUE(found) << found.error().describe();
+}
+
 }  // namespace
 }  // namespace sealwatch::mismatch
